@@ -17118,17 +17118,15 @@ struct hd_heat {
     double scale;
     hd_heat_opts opts;           /* resolved, perm and rational copied */
     int32_t *perm;
-    int32_t iterations_asked, poles_asked, no_factors;   /* no_factors: they did not fit */
-    int32_t exacting;            /* tol is below the default: sets have the highest degree */
+    int32_t iterations_asked, poles_asked;
     /* the status warns where rounding relative to the answer is above this: tol, or HDI_ROUNDING_LIMIT */
     double limit;
-    uint64_t no_factors_limit;   /* the byte limit into which factors did not fit */
+    uint64_t no_factors_limit;   /* the byte limit into which factors did not fit; 0: none */
     int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
-    hd_rational own_set;
-    hd_rational *sets;           /* [n_sets] where these are several; own_set is the first */
+    hd_rational *sets;           /* [n_sets] of the caller's; opts.rational is the first */
     int32_t n_sets;
     hdi_elim elim;               /* to factorise */
-    hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_few */
+    hdi_elim few;                /* the same in an order that is found fast, see hdi_krylov_elim */
     hdi_ground ground;           /* made when it is first needed; of elim */
     hdi_modes modes;             /* made when it is first needed */
     hdi_krylov *krylov;
@@ -17147,10 +17145,13 @@ struct hd_heat {
     /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero */
     double drift;
     int64_t version;             /* of the Laplacian from which all this was made */
-    int64_t *fill;               /* [n_active] work of a renewal, made at the first */
     hdi_sum *sums;               /* [n_sums] work */
     int32_t n_sums;              /* components that these and the lanes are for */
 };
+
+/* Is tol below the default? Then sets have the highest degree. */
+#define HDI_TOL_HEAT 1e-9
+static int hdi_exacting(const hd_heat *heat) { return heat->opts.tol < HDI_TOL_HEAT; }
 
 /* What the caller gets, by rows. */
 static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ? lane->tmp : lane->u; }
@@ -17214,12 +17215,15 @@ static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
     return e->status;
 }
 
-/* Gives the plan n lanes, without their arrays, or leaves it more. */
-static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hd_error *e) {
-    if (n <= heat->n_lanes) return HD_OK;
-    hdi_heat_free_lanes(heat);
-    heat->lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *heat->lane, e);
-    heat->n_lanes = heat->lane ? n : 0;
+/* Gives the plan n lanes, or leaves it more. Each of the n has this room. */
+static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hdi_lane_room room, hd_error *e) {
+    int32_t i;
+    if (n > heat->n_lanes) {
+        hdi_heat_free_lanes(heat);
+        heat->lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *heat->lane, e);
+        heat->n_lanes = heat->lane ? n : 0;
+    }
+    for (i = 0; i < n && e->status >= 0; i++) (void)hdi_lane_make(heat->lane + i, room, heat->ctx, e);
     return e->status;
 }
 
@@ -17236,12 +17240,10 @@ static void hdi_heat_free_iterative(hd_heat *heat) {
 /* Makes the copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     if (heat->weight) return HD_OK;
-    if (!heat->lap) {
-        if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
-        heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
-        if (!heat->lap) return e->status;
-    }
-    if (!heat->up.ptr && hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
+    hdi_heat_free_iterative(heat);               /* what a failure has left */
+    if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
+    heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
+    if (!heat->lap || hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
     heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
     if (!heat->weight) return e->status;
     heat->noise = heat->weight + heat->lap->n_active;
@@ -17253,6 +17255,16 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     heat->fam.up = &heat->up;
     heat->fam.weight = heat->weight;
     return e->status;
+}
+
+/* Does the caller ask for iterations? */
+static int hdi_factors_unasked(const hd_heat *heat) {
+    return heat->iterations_asked && heat->opts.method <= HD_METHOD_ITERATIVE;
+}
+
+/* Did factors not fit the byte limit that holds? */
+static int hdi_factors_barred(const hd_heat *heat) {
+    return heat->no_factors_limit && heat->no_factors_limit == heat->ctx->byte_limit;
 }
 
 /* Frees all factors; the analyses stay. */
@@ -17295,51 +17307,6 @@ static hd_status hdi_heat_analysed(hd_heat *heat, hd_error *e) {
     return hdi_heat_analysed_in(heat, &heat->elim, e);
 }
 
-/* Checks a right-hand side. Its largest part is between 2^(*exponent - 1) and 2^*exponent in size. */
-static hd_status hdi_solve_rhs(const hd_laplacian *lap, const hd_c64 *rhs, int *exponent, hd_error *e) {
-    double largest = 0;
-    int32_t v;
-    for (v = 0; v < lap->n; v++) {
-        if (!hdi_cfinite(rhs[v]))
-            return hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite",
-                                v, -1, hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
-        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
-    }
-    frexp(largest, exponent);
-    return HD_OK;
-}
-
-/* The right-hand side into the lane, near one so that no norm underflows or overflows, by rows and without
- * its constants, which go to x by vertices: b - B mean(b), and mean(b)/theta. Returns the norm with these. */
-static double hdi_shifted_load(const hd_heat *heat, const hd_c64 *rhs, int exponent, hd_c64 theta,
-                               hdi_lane *lane, hd_c64 *x) {
-    const hd_laplacian *lap = heat->lap;
-    const hd_c64 *mean = lane->k->mean;
-    double norm;
-    int32_t i, v;
-    for (i = 0; i < lap->n_active; i++) {
-        const hd_c64 r = rhs[lap->vertex[i]];
-        lane->b[i] = hdi_c(ldexp(r.re, -exponent), ldexp(r.im, -exponent));
-    }
-    norm = sqrt(hdi_cnorm2w(lane->b, heat->weight, lap->n_active));
-    hdi_deflate(lap, lane->b, lane->k->mean);
-    for (v = 0; v < lap->n; v++) x[v] = hdi_c(0, 0);
-    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = hdi_cdiv(mean[lap->component[i]], theta);
-    return norm;
-}
-
-/* The plan and its first lane for one system. */
-static hd_status hdi_shifted_prepare(hd_heat *heat, double t, hd_c64 theta, hd_error *e) {
-    hdi_family *fam = &heat->fam;
-    hd_rational set;
-    memset(&set, 0, sizeof set);
-    set.n_poles = 1;
-    set.theta[0] = theta;
-    if (hdi_heat_iterative(heat, e) < 0 || hdi_heat_make_lanes(heat, 1, e) < 0) return e->status;
-    if (hdi_lane_make(heat->lane, hdi_lane_room_of(heat->lap, fam, 0, 1), heat->ctx, e) < 0) return e->status;
-    return hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e);
-}
-
 #define HDI_TOL_SOLVE 1e-10
 
 static int hdi_solver_known(hd_solver s) {
@@ -17358,40 +17325,73 @@ static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o,
     return e->status;
 }
 
+/* The right-hand side into the lane by rows, times 2^-*exponent so that its norm, which is returned, keeps
+ * away from the ends of doubles. Its constants go to x: b - B mean(b), and mean(b)/theta. */
+static double hdi_shifted_load(const hd_laplacian *lap, const hdi_family *fam, const hd_c64 *rhs,
+                               hdi_lane *lane, hd_c64 *x, int *exponent, hd_error *e) {
+    double largest = 0, norm;
+    int32_t i, v;
+    for (v = 0; v < lap->n && e->status >= 0; v++) {
+        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
+        if (!hdi_cfinite(rhs[v]))
+            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v, -1,
+                         hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
+    }
+    if (e->status < 0) return 0;
+    frexp(largest, exponent);
+    for (i = 0; i < lap->n_active; i++) {
+        const hd_c64 r = rhs[lap->vertex[i]];
+        lane->b[i] = hdi_c(ldexp(r.re, -*exponent), ldexp(r.im, -*exponent));
+    }
+    norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, lap->n_active));
+    hdi_deflate(lap, lane->b, lane->k->mean);
+    memset(x, 0, (size_t)lap->n * sizeof *x);
+    for (i = 0; i < lap->n_active; i++)
+        x[lap->vertex[i]] = hdi_cdiv(lane->k->mean[lap->component[i]], fam->set.theta[0]);
+    return norm;
+}
+
+/* What is reported of the solution, which is in k->x. */
+static void hdi_shifted_tell(const hd_heat *heat, double b_norm, hd_solve_report *report) {
+    const hdi_iteration *k = heat->lane->k;
+    const double error = hdi_pole_error(k);
+    const double norm = sqrt(hdi_b_norm2_complex(heat->lap, k->x, heat->lane->tmp)) - error;
+    report->iterations = k->iterations;
+    report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
+    report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
+}
+
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                    double tol, hd_solve_report *report, hd_error *e) {
-    const hd_laplacian *lap;
-    hdi_lane *lane;
-    hdi_iteration *k;
     const hdi_watch watch = {heat->ctx, NULL, 0, 1, "solve"};
+    hd_rational set;
+    hd_laplacian *lap;
+    hdi_iteration *k;
     hd_status status;
     double b_norm;
     int32_t i, v;
     int exponent, unit;
-    if (hdi_solve_rhs(heat->source, rhs, &exponent, e) < 0) return e->status;
-    if (hdi_shifted_prepare(heat, t, theta, e) < 0) return e->status;
+    memset(&set, 0, sizeof set);
+    set.n_poles = 1;
+    set.theta[0] = theta;
+    if (hdi_heat_iterative(heat, e) < 0 ||
+        hdi_heat_make_lanes(heat, 1, hdi_lane_room_of(heat->lap, &heat->fam, 0, 1), e) < 0 ||
+        hdi_family_prepare(&heat->fam, &set, t * heat->scale, heat->lane, 1, e) < 0) return e->status;
     lap = heat->lap;
-    lane = heat->lane;
-    k = lane->k;
-    b_norm = hdi_shifted_load(heat, rhs, exponent, theta, lane, x);
+    k = heat->lane->k;
+    b_norm = hdi_shifted_load(lap, &heat->fam, rhs, heat->lane, x, &exponent, e);
+    if (e->status < 0) return e->status;
     hdi_iteration_start(k, b_norm);
-    hdi_iteration_residual(k, lane->b);
-    status = hdi_iteration_run(k, lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
+    hdi_iteration_residual(k, heat->lane->b);
+    status = hdi_iteration_run(k, heat->lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
-    if (report) {
-        const double error = hdi_pole_error(k);
-        const double norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
-        report->iterations = k->iterations;
-        report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
-        report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
-    }
+    if (report) hdi_shifted_tell(heat, b_norm, report);
     if (status > 0) e->status = status;
     /* the answer is in units of the right-hand side's, times those of B */
     frexp(heat->scale, &unit);
-    unit += exponent - 1;
     for (v = 0; v < lap->n; v++) {
-        x[v] = hdi_c(hdi_scale(x[v].re, unit), hdi_scale(x[v].im, unit));
+        x[v] = hdi_c(hdi_scale(x[v].re, unit + exponent - 1), hdi_scale(x[v].im, unit + exponent - 1));
         if (!hdi_cfinite(x[v]) && e->status >= 0)
             hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1,
                          x[v].re);
@@ -17521,7 +17521,6 @@ typedef struct hdi_heat_call {
     int32_t n_times;
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
-    int32_t forced;              /* auto takes iterations because of the byte limit */
     int32_t not_local;           /* balls have been tried, and did not serve */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
@@ -17529,7 +17528,6 @@ typedef struct hdi_heat_call {
     const hd_rational *set;      /* instead of what the plan would take */
     int32_t diagonal, degree;    /* the default set is that of diagonals; its degree, 0: the usual one */
     int32_t relative;            /* the report has errors relative to each value too */
-    int32_t deflated;            /* direct: right-hand sides are without their constants */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
@@ -17581,22 +17579,24 @@ static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) 
  * stay; what depends on values is made again when it is needed. */
 static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
+    hdi_scope s = hdi_scope_begin(heat->ctx, e);
+    int64_t *fill;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
-    if (!heat->fill) heat->fill = HDI_NEW(heat->ctx, int64_t, lap->n_active, e);
-    if (!heat->fill || hdi_heat_sums(heat, e) < 0) return e->status;
+    fill = HDI_TAKE(&s, int64_t, lap->n_active);
+    if (!fill || hdi_heat_sums(heat, e) < 0) return hdi_scope_end(&s);
     hdi_heat_measure_pair(heat);
-    if (HDI_HAS_DIRECT && heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, heat->fill);
-    if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, heat->fill);
+    if (HDI_HAS_DIRECT && heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, fill);
+    if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, fill);
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
-    if (heat->lap) hdi_pair_refresh(heat->lap, lap, heat->fill);
     if (heat->weight) {
+        hdi_pair_refresh(heat->lap, lap, fill);
         for (i = 0; i < lap->n_active; i++) heat->weight[i] = 1 / heat->lap->b_diag[i];
         hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
         heat->fam.filled = 0;
     }
-    return HD_OK;
+    return hdi_scope_end(&s);
 }
 
 static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report,
@@ -17973,12 +17973,8 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
  * systems. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
-    int32_t i;
     h->n_lanes = hdi_low32(h->ask.k, most);
-    if (hdi_heat_make_lanes(h->heat, h->n_lanes, h->e) < 0) return h->e->status;
-    for (i = 0; i < h->n_lanes; i++)
-        if (hdi_lane_make(h->heat->lane + i, room, h->heat->ctx, h->e) < 0) break;
-    return h->e->status;
+    return hdi_heat_make_lanes(h->heat, h->n_lanes, room, h->e);
 }
 
 /* The error of a uniform set is at most this part of the smallest norm that the answer can have, which is
@@ -18010,7 +18006,7 @@ static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
 /* The pole set of this call. degree: where nothing else says which. */
 static hd_status hdi_heat_set_of(const hdi_heat_call *h, int32_t degree, hd_rational *set) {
     const hd_heat_opts *o = &h->heat->opts;
-    if (h->heat->exacting || h->rate) degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_exacting(h->heat) || h->rate) degree = HDI_RAT_KERNEL_MAX;
     if (h->degree) degree = h->degree;
     if (o->degree) degree = h->rate ? hdi_high32(o->degree, HDI_RAT_KERNEL_MIN) : o->degree;
     if (h->set || o->rational) {
@@ -18025,7 +18021,7 @@ enum { HDI_DEGREE_DIRECT = 9 };  /* four pairs fill a pack, a real pole costs li
 
 static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     const hd_heat *heat = h->heat;
-    const int asked = h->set || heat->opts.rational || heat->opts.degree || heat->exacting;
+    const int asked = h->set || heat->opts.rational || heat->opts.degree || hdi_exacting(heat);
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
     if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES &&
         hdi_heat_degree(h, &degree) < 0) return h->e->status;
@@ -18035,7 +18031,7 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
     const hd_heat *heat = h->heat;
-    hdi_lane *lane = heat->lane + index;
+    hdi_lane *lane = h->heat->lane + index;
     const hdi_lanczos_task task = {heat->lap, heat->weight, heat->noise, h->t, heat->opts.tol, heat->drift,
                                    heat->opts.max_iterations, h->rate};
     const double share = 1.0 / h->ask.k;
@@ -18236,7 +18232,7 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 
 /* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
  * preconditioners, or bases. */
-static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
+static void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hd_laplacian *lap = heat->source;
@@ -18248,6 +18244,7 @@ static void hdi_iterative_cost(const hdi_heat_call *h, hd_cost *c) {
                                                 lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
                                                 lanczos ? 0 : poles);
     int32_t q;
+    (void)least;
     c->possible = 1;
     if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * n;
     for (q = 0; q < h->n_times; q++)
@@ -18275,16 +18272,28 @@ static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
     return HD_OK;
 }
 
-static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
+/* Runs all items of the call, as many at a time as there are lanes. solve answers n of them, which are
+ * loaded, from lane 0 on. */
+static hd_status hdi_heat_items(hdi_heat_call *h, void (*solve)(hdi_heat_call *h, int32_t n, void *arg),
+                                void *arg) {
     int32_t n;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
+        if (hdi_progress(h->heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0) break;
         n = hdi_heat_load_some(h);
-        /* progress here too: the calling thread may find all lanes taken */
-        if (h->e->status >= 0 && hdi_progress(h->heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) >= 0)
-            hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
+        if (h->e->status >= 0) solve(h, n, arg);
         if (hdi_heat_store_some(h, n) < 0) break;
     }
     return h->e->status;
+}
+
+/* Each lane is a task. */
+static void hdi_iterative_solve(hdi_heat_call *h, int32_t n, void *arg) {
+    (void)arg;
+    hdi_parallel(h->heat->ctx, n, hdi_heat_task, h);
+}
+
+static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
+    return hdi_iterative_prepare(h) < 0 ? h->e->status : hdi_heat_items(h, hdi_iterative_solve, NULL);
 }
 
 /* ---- direct ---- */
@@ -18293,20 +18302,11 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
  * the pivots of a real pole are positive. Growth far above proves that L is not. */
 #define HDI_GROWTH_MOST 50
 
-static hd_status hdi_direct_growth(hdi_heat_call *h) {
-    const hdi_elim *m = &h->heat->elim;
-    int32_t i;
-    if (m->lone >= 0 && m->real.all.negative) return hdi_not_semidefinite(h->e);
-    for (i = 0; i < m->n_used && m->set.kind != HD_POLES_OWN; i++)
-        if (m->pack[i].all.largest > HDI_GROWTH_MOST * m->pack[i].largest_entry)
-            return hdi_not_semidefinite(h->e);
-    return HD_OK;
-}
-
 /* Items that are solved at the same time: `count` batches of `width` lanes, a task each. */
 typedef struct hdi_batches {
     hdi_heat_call *h;
-    int32_t width, count, n_here;
+    int32_t width, count, n;     /* n: items in lanes */
+    int32_t deflated;            /* right-hand sides are without their constants */
     uint64_t doubles;            /* of a batch's arrays */
     int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
     uint64_t fresh;              /* doubles of the other batches' arrays, which are in the plan */
@@ -18402,21 +18402,27 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
 }
 
 /* The cost of fields and columns at the times of the call. */
-static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
+static void hdi_direct_cost(hdi_heat_call *h, double least, hd_cost *c) {
     hd_rational set;
     double factors;
-    if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
+    (void)least;
+    if (hdi_factors_unasked(h->heat) || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
     factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
     if (hdi_heat_at_hand(h)) c->seconds -= factors;
     else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
+/* Adds a factor to the report; flops: of those of a real one. */
+static void hdi_report_factor(hd_report *rep, const hdi_symbolic *sym, const hdi_factor *f, int32_t flops) {
+    rep->factor_flops += flops * sym->flops;
+    rep->growth = hdi_max(rep->growth, f->largest_entry > 0 ? f->all.largest / f->largest_entry : 0);
+}
+
 /* Makes the pole set and its factors. The bytes of what follows them are checked too, so that no work begins
  * that the byte limit would end. */
 static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n_sets) {
     hdi_elim *m = &h->heat->elim;
-    hd_report *rep = h->rep;
     const int solves = after <= HDI_AFTER_BOUND;
     hd_rational set;
     uint64_t need;
@@ -18430,16 +18436,13 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
                                                 : "factors of the poles and their inversion", h->e) < 0)
             return h->e->status;
     }
-    if (hdi_elim_poles(m, &set, h->t, h->e) < 0 || hdi_direct_growth(h) < 0) return h->e->status;
-    hdi_report_set(rep, &set);
-    for (i = 0; i < m->n_used; i++) {
-        rep->factor_flops += 16 * m->sym.flops;
-        rep->growth = hdi_max(rep->growth, m->pack[i].all.largest / m->pack[i].largest_entry);
-    }
-    if (m->lone >= 0) {
-        rep->factor_flops += m->sym.flops;
-        rep->growth = hdi_max(rep->growth, m->real.all.largest / m->real.largest_entry);
-    }
+    if (hdi_elim_poles(m, &set, h->t, h->e) < 0) return h->e->status;
+    hdi_report_set(h->rep, &set);
+    for (i = 0; i < m->n_used; i++) hdi_report_factor(h->rep, &m->sym, m->pack + i, 16);
+    if (m->lone >= 0) hdi_report_factor(h->rep, &m->sym, &m->real, 1);
+    if ((m->lone >= 0 && m->real.all.negative) ||
+        (m->set.kind != HD_POLES_OWN && h->rep->growth > HDI_GROWTH_MOST))
+        return hdi_not_semidefinite(h->e);
     return HD_OK;
 }
 
@@ -18476,14 +18479,14 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     const hd_heat *heat = h->heat;
     const hdi_batch batch = hdi_batches_get(b, index);
     hdi_lane *lane = h->heat->lane + index * b->width;
-    const int32_t n = hdi_low32(b->n_here - (int32_t)index * b->width, b->width);
+    const int32_t n = hdi_low32(b->n - (int32_t)index * b->width, b->width);
     int32_t r;
     (void)worker;
     hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
-        if (h->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
-        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, h->deflated, lane + r);
+        if (b->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
+        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, b->deflated, lane + r);
         lane[r].status = lane[r].negative ? hdi_not_semidefinite(&lane[r].error)
             : lane[r].off.rounding <= heat->limit * (lane[r].u_norm - lane[r].off.rounding)
             ? HD_OK : HD_WARN_ACCURACY;
@@ -18495,25 +18498,23 @@ static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
  * stay sparse. */
 #define HDI_DEFLATE 3e5
 
+static void hdi_direct_solve(hdi_heat_call *h, int32_t n, void *arg) {
+    hdi_batches *b = (hdi_batches *)arg;
+    int32_t i;
+    b->n = n;
+    for (i = 0; i < n && b->deflated; i++)
+        if (!h->heat->lane[i].skip) hdi_lane_deflate(h->heat->lane + i, h->lap);
+    hdi_parallel(h->heat->ctx, (n + b->width - 1) / b->width, hdi_batches_task, b);
+}
+
 static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     hdi_batches b;
-    int32_t i;
     if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
-    h->deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
-    for (h->batch = 0; h->batch < h->ask.k; h->batch += b.n_here) {
-        if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0)
-            return h->e->status;
-        b.n_here = hdi_heat_load_some(h);
-        for (i = 0; i < b.n_here && h->deflated; i++)
-            if (!h->heat->lane[i].skip) hdi_lane_deflate(h->heat->lane + i, h->lap);
-        if (h->e->status >= 0)
-            hdi_parallel(heat->ctx, (b.n_here + b.width - 1) / b.width, hdi_batches_task, &b);
-        if (hdi_heat_store_some(h, b.n_here) < 0) return h->e->status;
-    }
-    return h->e->status;
+    b.deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
+    return hdi_heat_items(h, hdi_direct_solve, &b);
 }
 
 /* ---- krylov ---- */
@@ -18599,7 +18600,7 @@ static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
     return few ? &heat->few : &heat->elim;
 }
 
-static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
+static void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
     const hdi_fill f = hdi_heat_fill(heat, m);
@@ -18610,6 +18611,8 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     const double n = heat->source->n_active, steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
+    (void)least;
+    if (heat->poles_asked || hdi_factors_unasked(heat)) return;
     c->possible = 1;
     c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
     c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
@@ -18724,16 +18727,14 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     int32_t i;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->heat->lane + i;
-        double size, fixed;
+        double moving = 0, size;
         hdi_ritz s;
         if (lane->skip) continue;
-        fixed = hdi_lane_means_norm2(lane, h->lap);
-        size = 0;
         if (z->done[i] > 0) {
             if (hdi_krylov_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
-            size = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
+            moving = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
         }
-        size = sqrt(size * size + fixed) / 2;
+        size = sqrt(moving * moving + hdi_lane_means_norm2(lane, h->lap)) / 2;
         if (lane->off.solver > heat->opts.tol * size || lane->off.rounding > heat->limit * size) return 0;
     }
     return 1;
@@ -18761,27 +18762,23 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
+    hdi_krylov *z = heat->krylov;
     int32_t n;
-    if (heat->krylov && (heat->krylov->wide != wide || heat->krylov->m != h->m))
-        hdi_krylov_free(heat->krylov, heat->ctx);
-    if (!heat->krylov) {
-        heat->krylov = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *heat->krylov, h->e);
-        if (!heat->krylov) return h->e->status;
-    }
-    heat->krylov->wide = wide;
-    heat->krylov->m = h->m;
-    heat->krylov->rate = h->rate;
-    heat->krylov->rim = h->rim;
-    heat->krylov->dual = h->ask.query == HDI_QUERY_ADJOINT;
-    heat->krylov->inverse = heat->krylov->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
+    if (z && (z->wide != wide || z->m != h->m)) hdi_krylov_free(z, heat->ctx);
+    if (!z) z = heat->krylov = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *z, h->e);
+    if (!z) return h->e->status;
+    z->wide = wide;
+    z->m = h->m;
+    z->rate = h->rate;
+    z->rim = h->rim;
+    z->dual = h->ask.query == HDI_QUERY_ADJOINT;
+    z->inverse = z->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
         if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
     }
-    h->rep->factor_flops = h->m->sym.flops;
-    h->rep->growth = h->m->shifted.largest_entry > 0
-                     ? h->m->shifted.all.largest / h->m->shifted.largest_entry : 0;
+    hdi_report_factor(h->rep, &h->m->sym, &h->m->shifted, 1);
     return h->e->status;
 }
 
@@ -18816,10 +18813,27 @@ static void hdi_report_merge(hd_report *all, const hd_report *one) {
     *all = sum;
 }
 
-/* Computes what every query needs: scale, spectrum, drift. Copies the caller's permutation. */
+/* Takes up checked pole sets, copied, in place of the plan's own choice, or with none that choice. */
+static hd_status hdi_heat_take_sets(hd_heat *heat, int32_t count, const hd_rational *sets, hd_error *e) {
+    hd_rational *copy = count > 0 ? HDI_NEW(heat->ctx, hd_rational, count, e) : NULL;
+    if (e->status < 0) return e->status;
+    if (copy) memcpy(copy, sets, (size_t)count * sizeof *copy);
+    if (copy) copy->kind = HD_POLES_OWN;
+    hdi_free(heat->ctx, heat->sets);
+    heat->sets = copy;
+    heat->n_sets = count;
+    heat->opts.rational = copy;
+    heat->opts.poles = HD_POLES_DEFAULT;
+    heat->opts.degree = 0;
+    heat->poles_asked = count > 0;
+    return HD_OK;
+}
+
+/* Computes what every query needs: scale, spectrum, drift. Copies the caller's set and permutation. */
 static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error *e) {
     hd_context *ctx = heat->ctx;
     heat->source = lap;
+    if (heat->opts.rational && hdi_heat_take_sets(heat, 1, heat->opts.rational, e) < 0) return e->status;
     if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
@@ -19058,7 +19072,6 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
 static void hdi_local_drop(hdi_local *l) {
     hd_context *ctx = l->heat.ctx;
     hdi_heat_free_factors(&l->heat);
-    hdi_free(ctx, l->heat.fill);
     hdi_free(ctx, l->heat.sums);
     memset(&l->heat, 0, sizeof l->heat);
     l->heat.ctx = ctx;
@@ -19416,24 +19429,36 @@ static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
 
 /* ---- choice of the method ---- */
 
-/* What each method that the call may take would take, in by [HD_METHOD_LOCAL + 1]. h->t is the last of its
- * times. */
+/* A method: what it would take, with c->possible = 0 where it cannot serve, and how it answers. least: the
+ * seconds of the best one so far. */
+typedef struct hdi_engine {
+    void (*cost)(hdi_heat_call *h, double least, hd_cost *c);
+    hd_status (*run)(hdi_heat_call *h);
+    const char *reason;          /* for auto to take it */
+} hdi_engine;
+
+static const hdi_engine hdi_engines[HD_METHOD_LOCAL + 1] = {
+    {NULL, NULL, NULL},
+    {HDI_HAS_ITERATIVE ? hdi_iterative_cost : NULL, HDI_HAS_ITERATIVE ? hdi_heat_by_iterations : NULL,
+     "iterations cost the least"},
+    {HDI_HAS_POLE_FACTORS ? hdi_direct_cost : NULL, HDI_HAS_POLE_FACTORS ? hdi_heat_by_direct : NULL,
+     "the factors of the poles cost least"},
+    {HDI_HAS_DIRECT ? hdi_krylov_cost : NULL, HDI_HAS_DIRECT ? hdi_heat_by_krylov : NULL,
+     "one real factor costs less than those of the poles"},
+    {HDI_HAS_LOCAL ? hdi_local_cost : NULL, HDI_HAS_LOCAL ? hdi_heat_by_local : NULL,
+     "heat reaches a small part of the mesh"}
+};
+
+/* What each method would take, in by [HD_METHOD_LOCAL + 1]. h->t is the last of its times. */
 static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
-    const hd_heat *heat = h->heat;
-    const int factors = !heat->iterations_asked || heat->opts.method > HD_METHOD_ITERATIVE;
     double least = HUGE_VAL;
     int q;
     memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
-    if (HDI_HAS_ITERATIVE) hdi_iterative_cost(h, by + HD_METHOD_ITERATIVE);
-    if (HDI_HAS_POLE_FACTORS && factors) hdi_direct_cost(h, by + HD_METHOD_DIRECT);
-    if (HDI_HAS_DIRECT && factors && !heat->poles_asked)
-        hdi_krylov_cost(h, by + HD_METHOD_KRYLOV);
-    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_KRYLOV; q++) {
+    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL && h->e->status >= 0; q++) {
+        if (hdi_engines[q].cost) hdi_engines[q].cost(h, least, by + q);
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
         if (by[q].possible) least = hdi_min(least, by[q].seconds);
     }
-    if (HDI_HAS_LOCAL && h->e->status >= 0) hdi_local_cost(h, least, by + HD_METHOD_LOCAL);
-    by[HD_METHOD_LOCAL].seconds += HDI_FRESH_BYTE * by[HD_METHOD_LOCAL].bytes;
 }
 
 /* The analysis that the method picked works with. */
@@ -19453,13 +19478,11 @@ static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) 
         h->method = (hd_method)q;
         cost = by[q].seconds;
     }
-    h->forced |= h->method == HD_METHOD_ITERATIVE && cost > least;
-    h->rep->reason = h->method == HD_METHOD_LOCAL ? "heat reaches a small part of the mesh"
-                     : h->method == HD_METHOD_KRYLOV ? "one real factor costs less than those of the poles"
-                     : h->method == HD_METHOD_ITERATIVE
-                       ? (h->forced ? "factors would not fit the byte limit" : "iterations cost the least")
-                     : hdi_heat_at_hand(h) ? "the factors of the poles are there from calls before"
-                                           : "the factors of the poles cost least";
+    h->rep->reason = hdi_engines[h->method].reason;
+    if (h->method == HD_METHOD_ITERATIVE && cost > least)
+        h->rep->reason = "factors would not fit the byte limit";
+    if (h->method == HD_METHOD_DIRECT && hdi_heat_at_hand(h))
+        h->rep->reason = "the factors of the poles are there from calls before";
 }
 
 /* Picks the method by the model. Analyses are made only where a factorisation could cost least. */
@@ -19479,34 +19502,32 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     }
 }
 
-/* Picks the method by the model, or as asked for. */
+/* Picks the method by the first rule that holds, or by the model. */
 static hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
-    h->method = heat->opts.method;
-    h->rep->reason = "asked for";
-    if (h->method == HD_METHOD_LOCAL && !hdi_local_can(h))
+    const struct { int holds; hd_method method; const char *reason; } rule[] = {
+        {heat->opts.method != HD_METHOD_AUTO, heat->opts.method, "asked for"},
+        {heat->spare == HDI_SPARE_POLES, HD_METHOD_DIRECT, "iterations, which would take less, fail"},
+        {h->degree > 0, HD_METHOD_DIRECT, "the bound of fewer poles is too large"},
+        {heat->iterations_asked, HD_METHOD_ITERATIVE, "a solver or preconditioner is asked for"},
+        {hdi_factors_barred(heat), HD_METHOD_ITERATIVE, "factors did not fit the byte limit"},
+        {!HDI_HAS_DIRECT, HD_METHOD_ITERATIVE, "this build has iterations only"}
+    };
+    size_t q;
+    for (q = 0; q < sizeof rule / sizeof *rule; q++) {
+        if (!rule[q].holds) continue;
+        h->method = rule[q].method;
+        h->rep->reason = rule[q].reason;
+        if (h->method != HD_METHOD_LOCAL || hdi_local_can(h)) return HD_OK;
         return hdi_fail(h->e, HD_ERR_ARGUMENT,
                         "heat: local serves fields, columns, entries and diagonals, where b_ratio is known");
-    if (h->method != HD_METHOD_AUTO) return HD_OK;
-    h->method = HD_METHOD_DIRECT;
-    h->rep->reason = "iterations, which would take less, fail";
-    if (heat->spare == HDI_SPARE_POLES) return HD_OK;
-    h->rep->reason = "the bound of fewer poles is too large";
-    if (h->degree) return HD_OK;
-    h->method = HD_METHOD_ITERATIVE;
-    h->rep->reason = "a solver or preconditioner is asked for";
-    if (heat->iterations_asked) return HD_OK;
-    h->rep->reason = "factors did not fit the byte limit";
-    h->forced = heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit;
-    if (h->forced) return HD_OK;
-    h->rep->reason = "this build has iterations only";
+    }
     return HDI_HAS_DIRECT ? hdi_heat_pick_by_cost(h) : HD_OK;
 }
 
 /* Picks the method and its copy of the pair, and reports them. */
 static hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    if (hdi_heat_make_lanes(heat, 1, h->e) < 0) return h->e->status;
     if (h->t == 0) {                             /* nothing to solve */
         h->method = heat->opts.method;
         if (h->method == HD_METHOD_AUTO)
@@ -19523,7 +19544,7 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
         h->lap = h->m->lap;
         h->rep->ordering = h->m->sym.ordering;
         h->rep->factor_nnz = h->m->sym.nnz;
-        if (h->n_times == 1) h->equal = hdi_heat_equal(heat, h->m, h->t, h->e);
+        h->equal = hdi_heat_equal(heat, h->m, h->t, h->e);
         if (h->e->status < 0) return h->e->status;
     }
     h->rep->method = h->method;
@@ -19540,12 +19561,10 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
 #define HDI_MODES_TOL 1e-7
 /* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
 #define HDI_MODES_RESIDUAL 1e-12
-/* Eigenpairs are tried before poles when at most the first number of them is expected to be enough, and after
- * poles up to the second number. The bound by poles goes above 1e-6 where 13 to 80 are expected on meshes of
- * 642 to 41K vertices, and at 164K where 240 are (classical, t = 1000 h^2) or 340 (weighted, 700 h^2). 20
- * take one to two times as long as poles do, once, and the second number about ten times. For sources all
- * over the surface that bound grows with the span (see below): it was above 1e-6 just below the third number
- * times span^1.2 on 14 meshes. */
+/* Eigenpairs are tried before poles where at most the first number of them is expected to be enough, which
+ * takes one to two times as long as poles, once; and after poles up to the second number, which takes about
+ * ten times as long. On meshes of 642 to 164K vertices the bound by poles goes above 1e-6 where 13 to 340 are
+ * expected, and for sources all over the surface just below the third number times span^1.2. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
 #define HDI_MODES_MANY 0.02
@@ -19573,14 +19592,19 @@ static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double v
     return hdi_ratio_root(lap) * sum;
 }
 
-/* The largest |X' B X - 1|, in the norm of Frobenius. bx [n] */
+/* out = B x, by vertices. */
+static void hdi_modes_apply(const hd_laplacian *lap, const double *x, double *out) {
+    int32_t i;
+    memset(out, 0, (size_t)lap->n * sizeof *out);
+    for (i = 0; i < lap->n_active; i++) out[lap->vertex[i]] = hdi_spec_mass_row(lap, x, i);
+}
+
+/* |X' B X - 1| in the norm of Frobenius. bx [n] */
 static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
     double sum = 0;
-    int32_t i, j, q;
+    int32_t i, j;
     for (j = 0; j < s->count; j++) {
-        const double *xj = s->vector + (int64_t)j * s->n;
-        memset(bx, 0, (size_t)s->n * sizeof *bx);
-        for (q = 0; q < lap->n_active; q++) bx[lap->vertex[q]] = hdi_spec_mass_row(lap, xj, q);
+        hdi_modes_apply(lap, s->vector + (int64_t)j * s->n, bx);
         for (i = 0; i <= j; i++) {
             const double g = hdi_dot(s->vector + (int64_t)i * s->n, bx, s->n) - (i == j);
             sum += (i == j ? 1 : 2) * g * g;
@@ -19631,21 +19655,17 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
 /* B times the vectors. */
 static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
-    const hd_laplacian *lap = heat->source;
     const int64_t size = (int64_t)x->s.n * x->s.count;
     int64_t at;
-    int32_t i;
-    if (x->bx || !lap->B) return HD_OK;
-    x->bx = (double *)hdi_alloc_zero(heat->ctx, (uint64_t)size, sizeof *x->bx, e);
-    if (!x->bx) return e->status;
-    for (at = 0; at < size; at += x->s.n)
-        for (i = 0; i < lap->n_active; i++)
-            x->bx[at + lap->vertex[i]] = hdi_spec_mass_row(lap, x->s.vector + at, i);
-    return HD_OK;
+    if (x->bx || !heat->source->B) return HD_OK;
+    x->bx = HDI_NEW(heat->ctx, double, size, e);
+    for (at = 0; at < size && x->bx; at += x->s.n)
+        hdi_modes_apply(heat->source, x->s.vector + at, x->bx + at);
+    return e->status;
 }
 
 static double hdi_modes_tol(const hd_heat *heat) {
-    return heat->exacting ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
+    return hdi_exacting(heat) ? hdi_min(HDI_MODES_TOL, 0.1 * heat->opts.tol) : HDI_MODES_TOL;
 }
 
 /* The square root of the largest component's mass times the largest entry of the diagonal of B^-1. */
@@ -19751,11 +19771,6 @@ static hdi_ledger hdi_modes_ledger(void) {
     return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
 }
 
-/* Is a bound by eigenpairs small enough, or the answer so near zero that nothing else is better? */
-static int hdi_modes_good(const hd_heat *heat, double t, const hd_report *rep) {
-    return rep->error_bound <= HDI_MODES_HELP || t * heat->modes.low > HDI_MODES_FADED;
-}
-
 /* ---- which way ---- */
 
 /* A query that eigenpairs can answer as well as poles. Both ways answer the time under way, h->now; what
@@ -19791,7 +19806,7 @@ static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
 /* May poles of the highest degree take over where the default's bound is too large, and may times share their
  * poles? Not where the caller chose, and not after the byte limit. */
 static int hdi_degree_open(const hd_heat *heat) {
-    return !heat->poles_asked && !heat->exacting && !heat->spare;
+    return !heat->poles_asked && !hdi_exacting(heat) && !heat->spare;
 }
 
 /* Takes up time q of the call, as if nothing had been tried. */
@@ -19810,27 +19825,20 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
         h->ask.list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
 }
 
-/* Answers time q from at most `most` eigenpairs, which are found if need be. Returns 0 where there are not
- * enough. */
-static int hdi_task_pairs(hdi_task *task, int32_t q, int32_t most) {
+/* Answers time q from at most `most` eigenpairs, or returns 0 where these are not enough; with most = 0 by
+ * poles, of which the highest degree takes over where the error of the default is too large. */
+static int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
-    if (!hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
+    if (most > 0 && !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
     hdi_task_at(h, q);
-    (void)task->pairs(task);
-    return 1;
-}
-
-/* Answers the time under way by poles. The highest degree takes over where the error of the default is too
- * large. */
-static hd_status hdi_task_poles(hdi_task *task) {
-    hdi_heat_call *h = task->h;
     task->excess = 0;
-    if (task->poles(task) < 0 || !(task->excess > 1) || !hdi_degree_open(h->heat)) return h->e->status;
-    hdi_task_at(h, h->now);
+    (void)(most > 0 ? task->pairs : task->poles)(task);
+    if (h->e->status < 0 || !(task->excess > 1) || !hdi_degree_open(h->heat)) return 1;
+    hdi_task_at(h, q);
     h->degree = HDI_RAT_KERNEL_MAX;
     (void)task->poles(task);
     h->degree = 0;
-    return h->e->status;
+    return 1;
 }
 
 /* Answers time q, which poles have answered, from eigenpairs after all, if the bound is too large and theirs
@@ -19842,10 +19850,9 @@ static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     if (by_poles <= HDI_MODES_HELP || (bound >= 0 && by_poles <= bound) || !task->serves ||
         !hdi_task_near(task, h->ask.t[q], most)) return h->e->status;
     hdi_heat_drop(h->heat);
-    if (!hdi_task_pairs(task, q, most) || h->e->status < 0 || h->rep->error_bound <= by_poles)
-        return h->e->status;
-    hdi_task_at(h, q);
-    return hdi_task_poles(task);
+    if (hdi_task_by(task, q, most) && h->e->status >= 0 && h->rep->error_bound > by_poles)
+        (void)hdi_task_by(task, q, 0);
+    return h->e->status;
 }
 
 /* Answers time q: from eigenpairs where few are left, else by poles. Where the bound is too large the other
@@ -19854,13 +19861,13 @@ static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
     double bound = -1;
     hdi_task_at(h, q);
-    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_pairs(task, q, 2 * task->serves)) {
-        if (h->e->status < 0 || hdi_modes_good(h->heat, h->ask.t[q], h->rep)) return h->e->status;
+    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_by(task, q, 2 * task->serves)) {
         bound = h->rep->error_bound;
+        if (h->e->status < 0 || bound <= HDI_MODES_HELP ||
+            h->ask.t[q] * h->heat->modes.low > HDI_MODES_FADED) return h->e->status;
     }
-    if (h->e->status < 0) return h->e->status;
-    hdi_task_at(h, q);
-    return hdi_task_poles(task) < 0 ? h->e->status : hdi_task_help(task, q, bound);
+    if (h->e->status >= 0) (void)hdi_task_by(task, q, 0);
+    return h->e->status < 0 ? h->e->status : hdi_task_help(task, q, bound);
 }
 
 /* Answers all times of a call: first those that few eigenpairs serve, then the others together or one by
@@ -19870,27 +19877,25 @@ static hd_status hdi_task_run(hdi_task *task) {
     const int32_t n = hdi_high32(h->ask.n_times, 1);
     hd_report *one;
     char *done;
-    int32_t q;
+    int32_t q, round;
     if (n == 1) return hdi_task_time(task, 0);
     one = HDI_TAKE_ZERO(&h->s, hd_report, n);
     done = HDI_TAKE_ZERO(&h->s, char, n);
-    for (q = 0; q < n && h->e->status >= 0; q++) {
-        if (!task->serves || !hdi_task_first(task, h->ask.t[q])) continue;
-        done[q] = HDI_DONE_FOR_GOOD;
-        (void)hdi_task_time(task, q);
-        one[q] = *h->rep;
-    }
-    if (h->e->status >= 0 && task->together) {
-        hdi_task_at(h, 0);
-        if (task->together(task, done, one) < 0) return h->e->status;
-    }
-    for (q = 0; q < n && h->e->status >= 0; q++) {
-        if (done[q] == HDI_DONE_FOR_GOOD) continue;
-        *h->rep = one[q];
-        if (done[q]) (void)hdi_task_help(task, q, -1);
-        else (void)hdi_task_time(task, q);
-        one[q] = *h->rep;
-        if (h->e->status < 0) h->e->column = q;
+    for (round = 0; round < 2 && h->e->status >= 0; round++) {
+        if (round == 1 && task->together) {
+            hdi_task_at(h, 0);
+            if (task->together(task, done, one) < 0) break;
+        }
+        for (q = 0; q < n && h->e->status >= 0; q++) {
+            if (done[q] == HDI_DONE_FOR_GOOD ||
+                (round == 0 && !(task->serves && hdi_task_first(task, h->ask.t[q])))) continue;
+            *h->rep = one[q];
+            if (done[q]) (void)hdi_task_help(task, q, -1);
+            else (void)hdi_task_time(task, q);
+            one[q] = *h->rep;
+            done[q] = HDI_DONE_FOR_GOOD;
+            if (h->e->status < 0) h->e->column = q;
+        }
     }
     if (h->e->status < 0) return h->e->status;
     memset(h->rep, 0, sizeof *h->rep);
@@ -19903,27 +19908,22 @@ static hd_status hdi_task_run(hdi_task *task) {
 /* Where heat flows out everything falls like exp(-t lambda_1), but the errors of poles do not. There few
  * eigenpairs are left too, whose errors fall as fast, see [25]. */
 
-/* Does all heat of the call fade, and may eigenpairs serve it? */
-static HDI_INLINE int hdi_fading(const hdi_heat_call *h) {
-    const hd_heat *heat = h->heat;
-    if (heat->no_factors && heat->ctx->byte_limit == heat->no_factors_limit) return 0;
-    return HDI_HAS_MODES && !heat->source->conserves && !h->rate && hdi_modes_allowed(heat);
-}
-
 /* How far eigenvalues have to reach above the lowest one, times t. The largest value of a column is about
  * b/mass times exp(-t low), and its norm sqrt(b); the last number is for sources near the border, where the
  * lowest eigenvector is small. */
 #define HDI_FADING_LOW 0.1
 
-/* Sets up a query whose answers fade. */
+/* Sets up a query whose answers may fade. */
 static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
+    const hd_heat *heat = h->heat;
     double span;
     memset(task, 0, sizeof *task);
     task->h = h;
-    if (!HDI_HAS_MODES || !hdi_fading(h)) return;
+    if (!HDI_HAS_MODES || heat->source->conserves || h->rate || hdi_factors_barred(heat) ||
+        !hdi_modes_allowed(heat)) return;
     task->serves = HDI_MODES_FIRST;
-    span = hdi_modes_span(h->heat);
-    task->depth = hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(h->heat))));
+    span = hdi_modes_span(heat);
+    task->depth = hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(heat))));
 }
 
 /* Sums over the pairs that are there, at the time under way. Arrays are in s. */
@@ -19967,12 +19967,22 @@ static void hdi_fading_bound(const hdi_heat_call *h, hdi_spec_sums *a, const hdi
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
+/* Sums over the pairs for columns, and the largest norms of vertices. */
+typedef struct hdi_fading_sums {
+    hdi_spec_sums a;
+    hdi_share most;
+} hdi_fading_sums;
+
 /* The answer of a lane from the pairs. */
-static void hdi_fading_lane(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_share *most, hdi_lane *lane) {
+static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
+    hdi_fading_sums *x = (hdi_fading_sums *)arg;
+    hdi_spec_sums *a = &x->a;
+    hdi_lane *lane = h->heat->lane;
     const hd_laplacian *lap = h->lap;
     double found = 0, kept = 0;
     int32_t q, i;
-    for (q = 0; q < a->of->s.count; q++) {
+    (void)n;
+    for (q = 0; q < a->of->s.count && !lane->skip; q++) {
         const double *v = a->of->s.vector + (int64_t)q * a->of->s.n, w = a->bank.weight[q];
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
@@ -19980,55 +19990,48 @@ static void hdi_fading_lane(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_
         found += c * c;
         kept += w * c * (w * c);
     }
+    if (lane->skip) return;
     hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, a);
     hdi_gather(lap, a->column, lane->u);
-    hdi_fading_bound(h, a, most, found, kept, lane);
+    hdi_fading_bound(h, a, &x->most, found, kept, lane);
 }
 
 /* The request at one time from the pairs that are there. */
 static hd_status hdi_fading_answer(hdi_task *task) {
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_share most = {0, 0, 0, 0, 0};
-    hdi_spec_sums a;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_fading_sums x;
     int32_t v;
-    h->lap = heat->source;
+    memset(&x, 0, sizeof x);
+    h->lap = h->heat->source;
     h->by_pairs = 1;
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
-    if (hdi_late_make(&a, h, 0, 0, &s) >= 0) a.column = HDI_TAKE(&s, double, heat->source->n);
+    if (hdi_late_make(&x.a, h, 0, 0, &s) >= 0) x.a.column = HDI_TAKE(&s, double, h->lap->n);
     if (h->e->status >= 0 && hdi_heat_lanes(h, 1, 0, 0) >= 0) {
-        for (v = 0; v < heat->source->n; v++) {
-            const hdi_share g = hdi_share_of(&a, v, 0);
-            most.left = hdi_max(most.left, g.left);
-            most.found = hdi_max(most.found, g.found);
-            most.whole = hdi_max(most.whole, g.whole);
-            most.side = hdi_max(most.side, g.side);
+        for (v = 0; v < h->lap->n; v++) {
+            const hdi_share g = hdi_share_of(&x.a, v, 0);
+            x.most.left = hdi_max(x.most.left, g.left);
+            x.most.found = hdi_max(x.most.found, g.found);
+            x.most.whole = hdi_max(x.most.whole, g.whole);
+            x.most.side = hdi_max(x.most.side, g.side);
         }
-        for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
-            if (hdi_progress(heat->ctx, "solve", (double)h->batch / h->ask.k, h->e) < 0 ||
-                hdi_heat_load(h, h->batch, h->heat->lane) < 0) break;
-            if (!h->heat->lane->skip) hdi_fading_lane(h, &a, &most, h->heat->lane);
-            if (hdi_heat_store_some(h, 1) < 0) break;
-        }
-        if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+        if (hdi_heat_items(h, hdi_fading_solve, &x) >= 0 && h->ask.list)
+            hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     }
     h->by_pairs = 0;
     return hdi_scope_end(&s);
 }
 
-/* Copies fields that their answers would overwrite, to ask for them again. Returns 0 if there is no room. */
+/* Copies fields that their answers would overwrite, where they are needed later. Returns 0 if there is no
+ * room. */
 static int hdi_fields_keep(hdi_heat_call *h) {
     const size_t n = (size_t)h->heat->source->n;
     double *copy;
     int32_t q;
-    if (!hdi_query_fields(h->ask.query) || h->ask.U != h->ask.F) return 1;
+    if (!h->ask.F || h->ask.U != h->ask.F) return 1;
     copy = HDI_TAKE(&h->s, double, n * (size_t)h->ask.k);
-    if (!copy) {
-        if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
-        return 0;
-    }
+    if (!copy) return 0;
     for (q = 0; q < h->ask.k; q++)
         memcpy(copy + n * (size_t)q, h->ask.F + h->ask.ldf * (size_t)q, n * sizeof *copy);
     h->ask.F = copy;
@@ -20038,68 +20041,19 @@ static int hdi_fields_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* Goes on in another way where one has ended: at the byte limit from factors that auto chose to iterations;
- * where iterations that auto chose fail, or direct is asked for and does not fit, to the fewest poles, with
- * all that can be made again freed before. Returns 0 where there is no other way. */
-static int hdi_heat_retreat(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
-    const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
-    if (!HDI_HAS_DIRECT || heat->spare == HDI_SPARE_POLES || h->t == 0) return 0;
-    /* fields may have been overwritten by their answers */
-    if (h->batch > 0 && hdi_query_fields(h->ask.query)) return 0;
-    if (HDI_HAS_LOCAL && automatic && failed && (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
-        hdi_local_free(heat);
-        h->not_local = 1;
-    } else if (HDI_HAS_ITERATIVE && automatic && over && (heat->elim.ctx || heat->few.ctx) && !h->forced &&
-               !h->degree) {
-        hdi_heat_free_factors(heat);
-        heat->no_factors = 1;
-        heat->no_factors_limit = heat->ctx->byte_limit;
-    } else if (HDI_HAS_POLE_FACTORS &&
-               (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
-                          : over && h->method == HD_METHOD_DIRECT)) {
-        hdi_heat_shed(heat);
-        hdi_heat_free_iterative(heat);
-        heat->spare = HDI_SPARE_POLES;
-    } else {
-        return 0;
-    }
-    hdi_task_at(h, h->now);
-    return 1;
-}
-
-/* Answers a call. If the byte limit ends it, all that can be made again is freed, and the call begins anew
- * without what is optional. */
-static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
-    const int32_t n_blocks = h->s.n;
-    hd_heat *heat = h->heat;
-    if (hdi_task_run(task) >= 0 || heat->spare || !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
-    while (h->s.n > n_blocks) hdi_free(heat->ctx, h->s.block[--h->s.n]);
-    hdi_error_clear(h->e);
-    hdi_heat_shed(heat);
-    heat->spare = HDI_SPARE_OPTIONS;
-    (void)hdi_task_run(task);
-    heat->spare = 0;
-    return h->e->status;
-}
-
 /* The means of the components. */
 static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++)
-        lane->u[i] = lane->target[lap->component[i]] / lap->component_mass[lap->component[i]];
+    hdi_lane_means(lane, lap);
+    for (i = 0; i < lap->n_active; i++) lane->u[i] = lane->sums[lap->component[i]];
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
 }
 
-/* What answers are off by at a time that counts as zero, relative to their norm. */
-static double hdi_plain_off(const hdi_heat_call *h) { return h->ask.t[h->now] > 0 ? HDI_STILL : 0; }
-
 /* The field itself. */
 static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
-    const double plain = hdi_plain_off(h) + (h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0);
+    const double plain = h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0;
     memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
     lane->u_norm = lane->f_norm;
     hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
@@ -20108,7 +20062,7 @@ static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
 
 /* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as that of
  * the product. */
-static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
+static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
     const double unit = 1 / h->heat->scale;
     double *w = lane->tmp, *noise = w + lap->n_active, sum = 0;
@@ -20116,45 +20070,85 @@ static hd_status hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_noise_weights(lap, unit, 0, noise, noise + lap->n_active);
     for (i = 0; i < lap->n_active; i++) sum += noise[i] * lane->f[i] * lane->f[i];
     hdi_pair_apply(lap, -unit, 0, lane->f, w);
-    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return h->e->status;
+    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return;
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_ratio_root(lap) *
-                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm) +
-                            hdi_plain_off(h) * lane->u_norm);
-    return HD_OK;
+                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm));
+}
+
+static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
+    hdi_lane *lane = h->heat->lane;
+    (void)n, (void)arg;
+    if (lane->skip) return;
+    if (h->equal) hdi_plain_means(h, lane);
+    else if (h->rate) hdi_plain_rate(h, lane);
+    else hdi_plain_field(h, lane);
+    /* at a time that counts as zero */
+    if (!h->equal && h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
 }
 
 /* Answers that need no solve: those for t = 0, or the means for very large t. */
 static hd_status hdi_heat_plain(hdi_heat_call *h) {
-    hdi_lane *lane;
-    if (hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
-    lane = h->heat->lane;
-    for (h->batch = 0; h->batch < h->ask.k; h->batch++) {
-        if (hdi_heat_load(h, h->batch, lane) < 0) return h->e->status;
-        if (!lane->skip && h->equal) hdi_plain_means(h, lane);
-        else if (!lane->skip && !h->rate) hdi_plain_field(h, lane);
-        else if (!lane->skip && hdi_plain_rate(h, lane) < 0) return h->e->status;
-        if (hdi_heat_store_some(h, 1) < 0) return h->e->status;
-    }
-    return HD_OK;
+    return hdi_heat_lanes(h, 1, 0, 0) < 0 ? h->e->status : hdi_heat_items(h, hdi_plain_solve, NULL);
 }
 
 /* One time by the method picked for it. */
 static hd_status hdi_heat_answer(hdi_heat_call *h) {
     if (hdi_heat_engine(h) < 0) return h->e->status;
     if (h->t == 0 || h->equal) return hdi_heat_plain(h);
-    if (HDI_HAS_POLE_FACTORS && h->method == HD_METHOD_DIRECT) return hdi_heat_by_direct(h);
-    if (HDI_HAS_DIRECT && h->method == HD_METHOD_KRYLOV) return hdi_heat_by_krylov(h);
-    if (HDI_HAS_LOCAL && h->method == HD_METHOD_LOCAL) return hdi_heat_by_local(h);
-    if (HDI_HAS_ITERATIVE && hdi_iterative_prepare(h) >= 0) (void)hdi_heat_by_iterations(h);
+    return hdi_engines[h->method].run(h);
+}
+
+/* Answers the time under way by the method picked. */
+static hd_status hdi_heat_chosen(hdi_task *task) {
+    hdi_heat_call *h = task->h;
+    if (hdi_heat_answer(h) >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }
 
-/* Answers the time under way by the method picked. If factors do not fit the byte limit, iterations do. */
-static hd_status hdi_heat_chosen(hdi_task *task) {
+/* After a failure the call begins anew: without local; at the byte limit without what is optional; then by
+ * iterations, without factors. Where iterations fail, or direct is asked for, the fewest poles are left.
+ * Returns 0 where there is no other way. */
+static int hdi_heat_retreat(const hdi_task *task) {
     hdi_heat_call *h = task->h;
-    while (hdi_heat_answer(h) < 0 && hdi_heat_retreat(h)) {}
-    if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    hd_heat *heat = h->heat;
+    const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
+    const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
+    const int columns = HDI_HAS_DIRECT && task->poles == hdi_heat_chosen;
+    int32_t q;
+    if (heat->spare == HDI_SPARE_POLES) return 0;
+    /* fields may have been overwritten by their answers */
+    if (h->ask.F && h->ask.F == h->ask.U && h->batch > 0) return 0;
+    if (HDI_HAS_LOCAL && columns && automatic && failed &&
+        (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
+        hdi_local_free(heat);
+        h->not_local = 1;
+    } else if (over && !heat->spare && (!columns || task->serves)) {
+        hdi_heat_shed(heat);
+        heat->spare = HDI_SPARE_OPTIONS;
+    } else if (HDI_HAS_ITERATIVE && columns && automatic && over && (heat->elim.ctx || heat->few.ctx) &&
+               !h->degree) {
+        hdi_heat_free_factors(heat);
+        heat->no_factors_limit = heat->ctx->byte_limit;
+    } else if (HDI_HAS_POLE_FACTORS && columns && h->t > 0 &&
+               (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
+                          : over && h->method == HD_METHOD_DIRECT)) {
+        hdi_heat_shed(heat);
+        hdi_heat_free_iterative(heat);
+        heat->spare = HDI_SPARE_POLES;
+    } else {
+        return 0;
+    }
+    for (q = hdi_high32(h->ask.n_times, 1); q > 0; q--) hdi_task_at(h, q - 1);
+    return 1;
+}
+
+/* Answers a call, if need be in several ways. */
+static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
+    const int32_t n_blocks = h->s.n, spare = h->heat->spare;
+    while (hdi_task_run(task) < 0 && hdi_heat_retreat(task))
+        while (h->s.n > n_blocks) hdi_free(h->heat->ctx, h->s.block[--h->s.n]);
+    h->heat->spare = spare;
     return h->e->status;
 }
 
@@ -20244,30 +20238,24 @@ static hd_status hdi_heat_sort_times(hdi_heat_call *h, double factor, const char
 /* Many times with one or a few krylov bases, where that is the method. */
 static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one) {
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    int32_t q, first;
+    int32_t q;
     if (!HDI_HAS_DIRECT || hdi_heat_sort_times(h, 1, done) < 0 || h->n_times == 0) return h->e->status;
-    first = h->time_column[0];
     if (h->times[0] == 0) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
-        if (h->method < HD_METHOD_KRYLOV ||
-            (h->method == HD_METHOD_KRYLOV && hdi_heat_equal(heat, h->m, h->t, h->e)) || h->e->status < 0)
-            return h->e->status;
-        if (HDI_HAS_LOCAL && h->method == HD_METHOD_LOCAL) (void)hdi_heat_by_local(h);
-        else (void)hdi_heat_by_krylov(h);
+        if (h->method < HD_METHOD_KRYLOV || h->equal) return HD_OK;
+        (void)hdi_engines[h->method].run(h);
     }
-    if (h->e->status < 0) return hdi_heat_retreat(h) ? HD_OK : h->e->status;
+    if (h->e->status < 0) return h->e->status;
     for (q = 0; q < h->ask.n_times && h->ask.list; q++)
         if (!done[q]) hdi_ledger_close(h->ask.list->ledger + q, h->rep);
     if (task->serves && h->rep->error_bound > HDI_MODES_HELP) return HD_OK;   /* one by one, then */
     for (q = 0; q < h->ask.n_times; q++) done[q] = HDI_DONE_FOR_GOOD;
-    one[first] = *h->rep;
+    one[h->time_column[0]] = *h->rep;
     return HD_OK;
 }
 
 /* Runs a request whose arguments are checked. */
 static hd_status hdi_heat_run(hdi_heat_call *h) {
-    const int32_t spare = h->heat ? h->heat->spare : 0;
     hdi_task task;
     if (h->e->status < 0 || h->ask.k == 0) return hdi_heat_end(h);
     hdi_fading_task(&task, h);
@@ -20276,10 +20264,8 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     task.together = hdi_columns_together;
     if (task.serves && h->ask.n_times == 1 &&
         !(hdi_task_near(&task, h->ask.t[0], HDI_MODES_MOST) && hdi_fields_keep(h))) task.serves = 0;
-    if (h->e->status < 0) return hdi_heat_end(h);
-    if (task.serves) (void)hdi_heat_sparing(h, &task);
-    else (void)hdi_task_run(&task);
-    h->heat->spare = spare;
+    if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (h->e->status >= 0) (void)hdi_heat_sparing(h, &task);
     return hdi_heat_end(h);
 }
 
@@ -20310,16 +20296,6 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
 
 /* ---- requests, and plans by their options ---- */
 
-/* Moves fields that lie ldf apart to where their answers will be, ldu apart in the same array. */
-static void hdi_fields_spread(hdi_request *ask, size_t n, double *U) {
-    int32_t q;
-    for (q = 1; q < ask->k && ask->ldu != ask->ldf; q++) {
-        const size_t at = (size_t)(ask->ldu > ask->ldf ? ask->k - q : q);
-        memmove(U + at * ask->ldu, U + at * ask->ldf, n * sizeof *U);
-    }
-    ask->ldf = ask->ldu;
-}
-
 /* Checks a request of fields, and runs it. derivative: in time. */
 static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int derivative, hd_report *report,
                                 hd_error *err) {
@@ -20336,7 +20312,7 @@ static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int deriv
     if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
     if (ask->U == ask->F && ask->n_times > 1)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
-    else if (ask->U == ask->F) hdi_fields_spread(&h.ask, (size_t)heat->source->n, ask->U);
+    else if (h.ask.ldu != h.ask.ldf) (void)hdi_fields_keep(&h);
     h.rate = derivative;
     return hdi_heat_run(&h);
 }
@@ -20367,14 +20343,15 @@ static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t 
                                   hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hd_csr a;
-    int64_t r;
+    int64_t r, p;
     if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
     a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
     for (r = 0; r < rows && e->status >= 0; r++) {
-        const int64_t size = from->end[r] - from->begin[r], at = a.row_ptr[r];
-        a.row_ptr[r + 1] = at + size;
-        if (size > 0) memcpy(a.col + at, from->col + from->begin[r], (size_t)size * sizeof *a.col);
-        if (size > 0) memcpy(a.val + at, from->val + from->begin[r], (size_t)size * sizeof *a.val);
+        a.row_ptr[r + 1] = a.row_ptr[r];
+        for (p = from->begin[r]; p < from->end[r]; p++) {
+            a.col[a.row_ptr[r + 1]] = from->col[p];
+            a.val[a.row_ptr[r + 1]++] = from->val[p];
+        }
     }
     if (e->status >= 0) {
         hdi_csr_free(ctx, out);
@@ -20391,7 +20368,6 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
     hdi_sparse to;
     double none;
     int64_t rows;
-    hd_error e;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0) return hdi_heat_end(&h);
     if (!out) return hdi_missing(h.e), hdi_heat_end(&h);
     if (hdi_columns_ask(&h, n_times, t, sources, &none, 0) < 0) return hdi_heat_end(&h);
@@ -20403,22 +20379,16 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
     h.ask.sparse = &to;
     h.ask.U = NULL;
     if (hdi_heat_run(&h) >= 0) {
-        hdi_error_clear(&e);
-        if (hdi_sparse_close(&to, rows, heat->source->n, out, heat->ctx, &e) < 0) {
-            h.rep->error = e;
-            h.rep->status = e.status;
-            if (err) *err = e;
-        }
+        (void)hdi_sparse_close(&to, rows, heat->source->n, out, heat->ctx, h.e);
         h.rep->error_bound += to.cut;
         hdi_bound_judge(h.rep->error_bound, h.rep);
     }
     hdi_free(heat->ctx, to.begin);
     hdi_free(heat->ctx, to.val);
     hdi_free(heat->ctx, to.dense);
-    return h.rep->status;
+    return hdi_heat_end(&h);
 }
 
-#define HDI_TOL_HEAT 1e-9
 enum { HDI_MAX_ITERATIONS = 20000 };
 
 /* Is what the options ask for in this build? */
@@ -20463,14 +20433,8 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
 static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     hd_heat_opts *o = &heat->opts;
     if (opts) *o = *opts;
-    if (o->rational) {
-        heat->own_set = *o->rational;
-        heat->own_set.kind = HD_POLES_OWN;
-        o->rational = &heat->own_set;
-    }
     heat->iterations_asked = o->solver || o->precond;
     heat->poles_asked = o->rational || o->poles || o->degree;
-    heat->exacting = o->tol > 0 && o->tol < HDI_TOL_HEAT;
     heat->limit = o->tol > 0 ? o->tol : HDI_ROUNDING_LIMIT;
     o->precond = o->precond ? o->precond : HD_PRECOND_MILDL;
     o->tol = o->tol > 0 ? o->tol : HDI_TOL_HEAT;
@@ -20488,24 +20452,10 @@ static void hdi_heat_free(hd_heat *heat) {
     hdi_heat_free_factors(heat);
     if (HDI_HAS_LOCAL) hdi_local_free(heat);
     hdi_free(ctx, heat->perm);
-    hdi_free(ctx, heat->fill);
     hdi_free(ctx, heat->sums);
     hdi_free(ctx, heat->sets);
     hdi_free(ctx, heat);
     hdi_let_go(ctx);
-}
-
-/* Takes up a checked pole set in place of the plan's own choice, or with NULL that choice. */
-static void hdi_heat_take_set(hd_heat *heat, const hd_rational *set) {
-    hd_heat_opts *o = &heat->opts;
-    if (set) {
-        heat->own_set = *set;
-        heat->own_set.kind = HD_POLES_OWN;
-    }
-    o->rational = set ? &heat->own_set : NULL;
-    o->poles = HD_POLES_DEFAULT;
-    o->degree = 0;
-    heat->poles_asked = set != NULL;
 }
 
 /* ==== [27] kernel ====
@@ -24625,7 +24575,6 @@ HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, co
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err) {
     hd_heat_opts *o = heat ? &heat->opts : NULL;
-    hd_rational *copy = NULL;
     hdi_call c;
     if (hdi_enter(&c, heat ? heat->ctx : NULL, heat && (count <= 0 || sets), err) < 0) return c.e->status;
     hdi_refuse(count < 0, "heat: the number of sets is negative", c.e);
@@ -24638,14 +24587,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
         hdi_heat_built(&asked, c.e);
     }
     if (c.e->status < 0 || hdi_sets_check(sets, count, c.e) < 0) return c.e->status;
-    if (count > 1) copy = HDI_NEW(heat->ctx, hd_rational, count, c.e);
-    if (c.e->status < 0) return c.e->status;
-    if (copy) memcpy(copy, sets, (size_t)count * sizeof *copy);
-    hdi_heat_take_set(heat, count > 0 ? sets : NULL);
-    hdi_free(heat->ctx, heat->sets);
-    heat->sets = copy;
-    heat->n_sets = count;
-    return HD_OK;
+    return hdi_heat_take_sets(heat, count, sets, c.e);
 }
 
 HEATDIFF_API void hd_heat_free(hd_heat *heat) { hdi_heat_free(heat); }
