@@ -9747,7 +9747,7 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hd
 }
 
 /* The bytes of a factor, or of a guest of another one. */
-static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width, int guest) {
     hd_error none;
     uint64_t bytes;
     hdi_scope s = hdi_scope_tally(&bytes, &none);
@@ -9755,10 +9755,6 @@ static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int gue
     memset(&host, 0, sizeof host);
     hdi_factor_take(&f, guest ? &host : NULL, sym, width, &s);
     return bytes;
-}
-
-static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
-    return hdi_factor_tally(sym, width, 0);
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -14179,8 +14175,8 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
     uint64_t bytes = 0, most = solves, need;
     int32_t i;
-    for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
-    if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
+    for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_bytes(&m->sym, HDI_PACK, i > 0);
+    if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1, 0);
     if (after == HDI_AFTER_BOUND) {
         if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
         need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
@@ -15618,11 +15614,11 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     const uint64_t nnz = (uint64_t)m->lap->L.nnz, n = (uint64_t)m->sym.n;
     uint64_t held = 0, make = 0, form = 0;
     if (!g->diag) {
-        held = hdi_factor_bytes(&m->sym, 1) + sizeof(double) * hdi_ground_size(m);
+        held = hdi_factor_bytes(&m->sym, 1, 0) + sizeof(double) * hdi_ground_size(m);
         make = hdi_inverse_bytes(&m->sym, 1, 0, 0) + sizeof(double) * nnz;
     }
     if (forms && !g->formed)
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
+        form = hdi_factor_bytes(&m->sym, HDI_PACK, 0) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
                sizeof(double) * (2 * nnz + 2 * n + hdi_sweep_size(&m->sym, 1, 1));
     return held + (make > form ? make : form);
 }
@@ -15814,17 +15810,6 @@ static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_s
     s->h = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)s->n_group);
     s->part = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)hdi_spec_chunks(rows));
     s->noise = HDI_TAKE(&s->runs, double, 2 * n);
-}
-
-/* Bytes that a computation takes: its arrays, and the vectors twice in the end. */
-static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
-    uint64_t bytes;
-    hd_error e;
-    hdi_spec s;
-    memset(&s, 0, sizeof s);
-    s.keep = s.runs = hdi_scope_tally(&bytes, &e);
-    hdi_spec_take(&s, n, count, n_sweep);
-    return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + (double)HDI_SPEC_GAPS);
 }
 
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double below, double tol,
@@ -17621,26 +17606,41 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 
 /* ---- what factors take ---- */
 
-/* What is known of the factors of elim or few, or guessed before the analysis. */
-typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
+/* What is known of the factors of elim or few, or guessed before the analysis: non-zeros and flops of a real
+ * one, doubles of it, and seconds that the analysis will take. */
+typedef struct hdi_fill { double n, nnz, flops, stored, analysis; } hdi_fill;
 
 /* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
  * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
  * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_fill_guess(double n, double entries) {
-    const double wide = hdi_max(1, entries / (10 * n)), stored = 40 * n * wide;
-    const hdi_fill f = {30 * n * wide, 22 * n * sqrt(n) * wide * wide, stored, stored,
+    const double wide = hdi_max(1, entries / (10 * n));
+    const hdi_fill f = {n, 30 * n * wide, 22 * n * sqrt(n) * wide * wide, 40 * n * wide,
                         HDI_ROW_ANALYSIS * n * wide};
     return f;
 }
 
 static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
-    const hdi_symbolic *s = &m->sym;
-    hdi_fill f = {(double)s->nnz, s->flops_done, (double)(s->stored + s->work), 0, 0};
-    if (m->ctx) f.real_stored = (double)(s->panel[s->n_super] + s->work);
-    else f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
-    if (m == &heat->few) f.analysis *= 0.4;
+    hdi_fill f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
+    f.analysis *= m->ctx ? 0 : m == &heat->few ? 0.4 : 1;
+    if (!m->ctx) return f;
+    f.nnz = (double)m->sym.nnz;
+    f.flops = m->sym.flops_done;
+    f.stored = (double)hdi_factor_bytes(&m->sym, 1, 0) / 8;
     return f;
+}
+
+/* Sweeps are faster by this factor where several right-hand sides share them. */
+#define HDI_SHARED 2.5
+
+/* Adds so many factorisations of this width, 1 or HDI_PACK, and of solves, which are alone or share sweeps. */
+static void hdi_fill_cost(hdi_fill f, int32_t width, double factors, double solves, int shared, hd_cost *c) {
+    const int pack = width > 1;
+    const double flops = (pack ? 16 : 1) * factors * f.flops, made = (pack ? 180 : 0) * factors * f.nnz;
+    const double sweep = pack ? 100 * f.nnz + 600 * f.n : 16 * f.nnz + 100 * f.n;
+    c->flops += flops + (pack ? 64 : 4) * solves * f.nnz;
+    c->seconds += flops / (pack ? HDI_RATE_PACK : HDI_RATE_REAL) +
+                  (made + solves * sweep / (shared ? HDI_SHARED : 1)) / HDI_RATE_BYTES;
 }
 
 /* From this t lambda_max on it is worthwhile to ask whether only the means are left. Beyond the second number
@@ -18348,50 +18348,9 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
 
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
 
-/* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
- * time, on meshes of 10K to 150K vertices. */
-#define HDI_INVERT_FLOPS 2.0
-#define HDI_INVERT_SECONDS 2.0
-#define HDI_FORMS_SECONDS 4.0
-/* Sweeps are faster by this factor where several right-hand sides share them. */
-#define HDI_SHARED 2.5
-
-/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
- * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. Returns the seconds of the
- * factors. */
-static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
-                             int32_t k, double held, hd_cost *c) {
-    hd_heat *heat = h->heat;
-    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const int inverse = after >= HDI_AFTER_INVERSE, bound = after == HDI_AFTER_BOUND;
-    const double n = heat->source->n_active, lone = hdi_set_lone(set);
-    /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
-    const double packs = hdi_high32(1, hdi_set_packs(set));
-    const double solves = inverse ? (double)k + (double)HDI_PROBES : k;
-    const double factors = packs * (16 * f.flops / HDI_RATE_PACK + 180 * f.nnz / HDI_RATE_BYTES) +
-                           lone * f.flops / HDI_RATE_REAL;
-    const double longer = after == HDI_AFTER_FORMS ? HDI_FORMS_SECONDS : inverse ? HDI_INVERT_SECONDS : 0;
-    double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
-    k = hdi_high32(k, inverse ? HDI_PROBES : 0);
-    if (heat->elim.ctx) {
-        const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), k);
-        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
-        if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
-            bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
-        /* the solves' arrays of one time stay while the next one is factorised */
-        if (h->n_times > 1) bytes += (double)solving;
-    } else if (inverse) {
-        bytes += 16 * n * n_sets;
-    }
-    c->possible = 1;
-    c->flops += (16 * packs + lone) * f.flops * (inverse ? 1 + HDI_INVERT_FLOPS : 1) +
-                (bound ? (1 + HDI_INVERT_FLOPS - lone) * f.flops : 0) + solves * (64 * packs + 4) * f.nnz;
-    /* without the bound, which a choice of the method has no need to look at */
-    c->seconds += factors * (1 + longer) +
-                  solves * packs * (100 * f.nnz + 600 * n) / (HDI_RATE_BYTES * (k > 1 ? HDI_SHARED : 1));
-    c->bytes = hdi_max(c->bytes, bytes + held);
-    return factors;
-}
+/* Inverting factors takes as many times the work of making them: by counting; and by time, with a diagonal B,
+ * on meshes of 10K to 150K vertices. */
+#define HDI_INVERT 2.0
 
 /* Are the factors of the poles there? The default degree of fields is not known yet: that of the last call is
  * assumed. */
@@ -18401,15 +18360,42 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
+/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
+ * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
+static void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
+                           int32_t k, double held, hd_cost *c) {
+    hd_heat *heat = h->heat;
+    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
+    const int inverse = after >= HDI_AFTER_INVERSE;
+    const int32_t probes = inverse ? HDI_PROBES : 0;
+    /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
+    const double packs = hdi_high32(1, hdi_set_packs(set)), made = hdi_heat_at_hand(h) ? 0 : 1;
+    const double times = made * (inverse ? 1 + HDI_INVERT : 1), solves = (double)k + probes;
+    double bytes = 64 * packs * f.stored + 8 * f.stored + 200 * f.n + 16 * f.n * n_sets +
+                   hdi_min(k, HDI_LANES) * 140 * f.n;
+    hdi_fill_cost(f, HDI_PACK, packs * times, packs * solves, k > 1, c);
+    hdi_fill_cost(f, 1, hdi_set_lone(set) * times, 0, 0, c);
+    /* without its seconds, which a choice of the method has no need to look at */
+    if (after == HDI_AFTER_BOUND) c->flops += (1 + HDI_INVERT - hdi_set_lone(set)) * f.flops;
+    if (heat->elim.ctx) {
+        const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), hdi_high32(k, probes));
+        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
+        if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
+            bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
+        /* the solves' arrays of one time stay while the next one is factorised */
+        if (h->n_times > 1) bytes += (double)solving;
+    }
+    c->possible = 1;
+    c->bytes = hdi_max(c->bytes, bytes + held);
+}
+
 /* The cost of fields and columns at the times of the call. */
 static void hdi_direct_cost(const hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
-    double factors;
     if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
-    factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
+    hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
-    if (hdi_heat_at_hand(h)) c->seconds -= factors;
-    else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
+    c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
 /* Makes the pole set and its factors. The bytes of what follows them are checked too, so that no work begins
@@ -18564,22 +18550,18 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
 /* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
  * times might overflow. */
 static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
-    const double factor = f.flops / HDI_RATE_REAL;
-    const double step = (16 * f.nnz + 100 * (double)h->heat->source->n_active) / HDI_RATE_BYTES;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
     const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
     double best = HUGE_VAL;
-    hdi_windows all = {1, 0, 0};
-    int32_t w;
-    for (w = least; w < 2 * least + 15; w++) {
-        const double ratio = exp(span / w);
-        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
-        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
-        if (w * factor + steps * step >= best) continue;
-        best = w * factor + steps * step;
-        all.n = w;
-        all.steps = steps;
-        all.longest = longest;
+    hdi_windows all = {1, 0, 0}, one;
+    for (one.n = least; one.n < 2 * least + 15; one.n++) {
+        hd_cost c = {0, 0, 0, 0, 0, 0};
+        one.longest = hdi_krylov_steps(exp(span / one.n), 0) + (one.n > 1 ? HDI_STEPS_HANDED_ON : 0);
+        one.steps = one.longest + (one.n - 1) * hdi_krylov_steps(exp(span / one.n), 1);
+        hdi_fill_cost(f, 1, one.n, one.steps, 0, &c);
+        if (c.seconds >= best) continue;
+        best = c.seconds;
+        all = one;
     }
     return all;
 }
@@ -18607,19 +18589,17 @@ static void hdi_krylov_cost(const hdi_heat_call *h, hd_cost *c) {
     const int ready = h->n_times == 1 && m->shifted.ready &&
         m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const double n = heat->source->n_active, steps = h->ask.k * w.steps;
+    const double steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
     c->possible = 1;
-    c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
-    c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
-                 steps * (16 * f.nnz + 100 * n) / (HDI_RATE_BYTES * (wide > 1 ? HDI_SHARED : 1)) +
-                 h->n_times * steps / w.n * 8 * n / HDI_RATE_BYTES;
+    hdi_fill_cost(f, 1, w.n - ready, steps, wide > 1, c);
+    c->seconds += f.analysis + h->n_times * steps / w.n * 8 * f.n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
-    if (!m->shifted.ctx) c->bytes = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1) : 8 * f.real_stored;
-    c->bytes += (double)sizeof(hdi_krylov) + 8 * n * (wide * (longest + 11) + 10);
-    if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
+    c->bytes = (double)sizeof(hdi_krylov) + 8 * f.n * (wide * (longest + 11) + 10);
+    if (!m->shifted.ctx) c->bytes += 8 * f.stored;
+    if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * f.n;   /* sums at several times */
 }
 
 /* The steps of a basis for n items and the times [q0, q1). */
@@ -19409,7 +19389,7 @@ static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
     c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
-    c->bytes = 8 * f.real_stored + (8 * steps + 400) * n;
+    c->bytes = 8 * f.stored + (8 * steps + 400) * n;
     c->seconds = h->ask.k * (f.analysis + HDI_LOCAL_MAKE * n + f.flops / HDI_RATE_REAL +
                              steps * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES);
 }
@@ -19694,12 +19674,16 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 #define HDI_MODES_SURE 0.5       /* at least this part is needed: 0.67 was seen on a dozen vertices */
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
-    const int32_t n = heat->source->n_active;
     const hdi_elim *m = &heat->elim;
-    const double factor = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1)
-                          : 8 * hdi_heat_fill(heat, m).real_stored;
-    return hdi_spec_need(n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0) + factor +
-           2.0 * sizeof(double) * heat->source->n;
+    const int32_t n = heat->source->n_active;
+    uint64_t bytes;
+    hd_error none;
+    hdi_spec s;
+    memset(&s, 0, sizeof s);
+    s.keep = s.runs = hdi_scope_tally(&bytes, &none);
+    hdi_spec_take(&s, n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0);
+    hdi_scope_count(&bytes, 2 * (uint64_t)n * ((uint64_t)count + HDI_SPEC_GAPS), sizeof(double));
+    return (double)bytes + 8 * hdi_heat_fill(heat, m).stored + 16.0 * heat->source->n;
 }
 
 /* Finds `count` eigenpairs. Returns 0 if that fails, if they are not proven complete, or if there is no room:
@@ -22775,7 +22759,7 @@ static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
     one = sure && by[1].bytes <= hdi_bytes_left(heat->ctx);
     if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
         by[1].bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1, 0)));
     if (!hdi_estimate_shared(x, c)) {
         memset(c, 0, sizeof *c);
         c->flops = h->n_times * by[one].flops;
@@ -22792,17 +22776,15 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
     const int forms = x->query->distance->power > 1;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double n = heat->source->n_active, columns = (double)x->k + (double)HDI_PROBES;
-    const double factor = (forms ? 17 : 1) * f.flops, solves = columns * (forms ? 4 : 2);
+    const double columns = (double)x->k + (double)HDI_PROBES;
     c->possible = 1;
-    c->flops = factor * (1 + HDI_INVERT_FLOPS) + solves * 4 * f.nnz;
-    c->seconds = factor / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS) +
-                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES;
-    c->bytes = 8 * f.real_stored * (forms ? 9 : 1);
+    hdi_fill_cost(f, 1, 1 + HDI_INVERT, columns * (forms ? 4 : 2), 0, c);
+    hdi_fill_cost(f, HDI_PACK, forms ? 1 + HDI_INVERT : 0, 0, 0, c);
+    c->bytes = 8 * f.stored * (forms ? 9 : 1);
     if (heat->elim.ctx)
         c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
                    16 * (double)hdi_ground_room(&heat->elim);
-    c->bytes += 40 * n + 16.0 * heat->source->n + 48.0 * x->k + HDI_ESTIMATE_SMALL;
+    c->bytes += 40 * f.n + 16.0 * heat->source->n + 48.0 * x->k + HDI_ESTIMATE_SMALL;
     c->bytes_most = c->bytes;
 }
 
@@ -22820,16 +22802,14 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 /* The cost of finding `count` of them. */
 static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
-    const double solves = 2.5 * count + (double)HDI_SPEC_HALF;
     hd_cost c;
     memset(&c, 0, sizeof c);
     c.possible = 1;
-    c.flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
-    c.seconds = runs * f.flops / HDI_RATE_REAL +
-                HDI_MODES_SECONDS * n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
+    hdi_fill_cost(f, 1, 2 + ceil(count / (double)HDI_SPEC_HALF), 0, 0, &c);
+    c.flops += (2.5 * count + (double)HDI_SPEC_HALF) * (4 * f.nnz + 8 * f.n * count);
+    c.seconds += HDI_MODES_SECONDS * f.n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
     c.bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-    c.bytes_most = HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    c.bytes_most = HDI_MODES_OVER * c.bytes;
     return c;
 }
 
@@ -23218,7 +23198,7 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active);
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     /* the last factor, and what is kept of those before */
-    uint64_t need = hdi_factor_bytes(&g->sym, 1);
+    uint64_t need = hdi_factor_bytes(&g->sym, 1, 0);
     int32_t c;
     hdi_scope_count(&need, (uint64_t)g->sym.panel[g->sym.n_super], (mean ? 2 : 1) * sizeof(double));
     if (e->status < 0 || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
