@@ -17633,7 +17633,7 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
 /* Sweeps are faster by this factor where several right-hand sides share them. */
 #define HDI_SHARED 2.5
 
-/* Adds so many factorisations of this width, 1 or HDI_PACK, and of solves, which are alone or share sweeps. */
+/* Adds so many factorisations of this width, 1 or HDI_PACK, and solves, which share sweeps or do not. */
 static void hdi_fill_cost(hdi_fill f, int32_t width, double factors, double solves, int shared, hd_cost *c) {
     const int pack = width > 1;
     const double flops = (pack ? 16 : 1) * factors * f.flops, made = (pack ? 180 : 0) * factors * f.nnz;
@@ -22600,45 +22600,36 @@ static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources 
  * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by {
-    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
-} hdi_by;
+typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
 
-/* What a query is. */
 typedef struct hdi_query_row {
     hd_query query;
-    hdi_by by;                   /* nothing: there is no such query */
-    int32_t columns;             /* k counts columns that are solved for */
+    hdi_by by;
+    int32_t columns;             /* k counts columns that are solved for, or pairs that are found */
     int32_t mass;                /* K_t is asked for, not k_t */
     const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
-static const hdi_query_row hdi_other_queries[] = {
+static const hdi_query_row hdi_query_rows[] = {
     {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
     {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
     {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
     {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
     {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
     {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+    {HD_QUERY_DISTANCE, HDI_BY_INVERSION, 1, 0, hdi_distance_rows},
+    {HD_QUERY_DISTANCE_WEIGHTED, HDI_BY_INVERSION, 1, 0, hdi_distance_rows + 1},
+    {HD_QUERY_DISTANCE_COMMUTE, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 2},
+    {HD_QUERY_DISTANCE_BIHARMONIC, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 3},
     {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
 };
 
-static hdi_query_row hdi_query_of(hd_query query) {
-    hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
+/* NULL: there is no such query. */
+static const hdi_query_row *hdi_query_of(hd_query query) {
     size_t q;
-    for (q = 0; q < sizeof hdi_other_queries / sizeof *hdi_other_queries; q++)
-        if (hdi_other_queries[q].query == query) return hdi_other_queries[q];
-    for (q = 0; q < HDI_DISTANCES; q++) {
-        if (hdi_distance_rows[q].query != query) continue;
-        row.distance = hdi_distance_rows + q;
-        row.by = row.distance->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
-    }
-    return row;
-}
-
-/* Has the query times? */
-static int hdi_query_timed(const hdi_query_row *query) {
-    return query->by == HDI_BY_SOLVES || query->by == HDI_BY_INVERSION;
+    for (q = 0; q < sizeof hdi_query_rows / sizeof *hdi_query_rows; q++)
+        if (hdi_query_rows[q].query == query) return hdi_query_rows + q;
+    return NULL;
 }
 
 /* A query under estimation. */
@@ -22646,9 +22637,8 @@ typedef struct hdi_estimate {
     hdi_heat_call *h;
     const hdi_query_row *query;
     hd_estimate *to;
-    int32_t k;
     double unit;                 /* the call's times are the caller's times this */
-    double held;                 /* bytes of arrays that the query takes first */
+    double held;                 /* bytes of arrays that the query takes first, and of small ones */
     hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
 
@@ -22665,109 +22655,106 @@ static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
     return h->e->status;
 }
 
+/* Solves, or an inversion for `count` times that share a set, with what is made of it. */
+static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int32_t count, hd_cost *c) {
+    const hd_laplacian *lap = x->h->heat->source;
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t k = x->h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
+    const int forms = kind && kind->mass > 0 && lap->B;
+    const double n = lap->n_active, entries = (double)(lap->L.nnz + lap->n_active) / 2;
+    double doubles = 6 * n + count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
+    if (x->query->by == HDI_BY_SOLVES) {
+        hdi_direct_set(x->h, set, HDI_AFTER_BOUND, 0, k, x->held, c);
+        return;
+    }
+    /* the values, and a diagonal */
+    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n);
+    if (kind)                                    /* a metric, and columns of its bound or at all times */
+        doubles += 12 * n + 3.0 * lap->n + 6.0 * k + (count > 1 ? 2.0 * count : hdi_min(k, HDI_LANES)) * n;
+    hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
+}
+
+/* Bytes where the highest degree takes over; of inversions and distances after a try whose lanes and real
+ * factor stay. */
+static double hdi_estimate_most(const hdi_estimate *x) {
+    const hdi_heat_call *h = x->h;
+    const hdi_elim *m = &h->heat->elim;
+    hd_cost c;
+    hd_rational set;
+    memset(&c, 0, sizeof c);
+    if (hdi_heat_set_of(h, HDI_RAT_KERNEL_MAX, &set) < 0) return 0;
+    hdi_estimate_set(x, &set, 1, &c);
+    if (!m->ctx || (x->query->by == HDI_BY_SOLVES && !x->query->distance)) return c.bytes;
+    return c.bytes + (double)hdi_batches_need(h->heat, 1, hdi_high32(h->ask.k, HDI_PROBES)) +
+           (m->real.ctx ? 0 : (double)hdi_factor_bytes(&m->sym, 1, 0));
+}
+
 /* Fields, columns and entries: all methods, of which the run picks one. */
 static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times;
-    const double *times = h->times;
-    hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
-    hd_rational set;
+    hd_cost *by = x->to->cost;
     int32_t q;
-    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
-        h->times = &h->t;                        /* the last */
-        h->n_times = 1;
-        (void)hdi_heat_pick(h);
-        h->n_times = n_times;
-        h->times = times;
-    }
-    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (hdi_heat_pick(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
                              hdi_estimate_analyse(h) < 0)) return h->e->status;
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
     hdi_heat_costs(h, by);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++) {
-        if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
+        if (by[q].possible) by[q].bytes += x->held;
         by[q].bytes_most = by[q].bytes;
     }
-    if (!direct->possible || hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
-    memset(&most, 0, sizeof most);
-    (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
-    if (x->query->distance && !heat->poles_asked && heat->elim.ctx)   /* the arrays of the first try stay */
-        most.bytes += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
-    direct->bytes_most = hdi_max(direct->bytes, most.bytes);
+    if (by[HD_METHOD_DIRECT].possible)
+        by[HD_METHOD_DIRECT].bytes_most = hdi_max(by[HD_METHOD_DIRECT].bytes, hdi_estimate_most(x));
     return h->e->status;
-}
-
-/* An inversion for `count` times of a query that share a set, with what is made of it. */
-static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
-                                   hd_cost *c) {
-    const hd_laplacian *lap = x->h->heat->source;
-    const int distance = x->query->distance != NULL;
-    const int forms = distance && x->query->distance->mass > 0 && lap->B;
-    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
-    const int32_t sums = 2 * hdi_low32(count, set->n_poles);
-    /* the values, and a diagonal */
-    double doubles = (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n) + 6 * n;
-    if (distance)                                /* a metric, and columns of its bound or at all times */
-        doubles += 12 * n + 3.0 * lap->n + 6.0 * x->k +
-                   (count > 1 ? 2.0 * count : hdi_min(x->k, HDI_LANES)) * n;
-    doubles += count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
-    (void)hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, distance ? x->k : 0,
-                         x->held + 8 * doubles + HDI_ESTIMATE_SMALL, c);
 }
 
 /* The times of the call by poles that they share, in windows. Returns 0 if they share none. */
 static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    const int distance = x->query->distance != NULL;
-    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
-    int32_t windows = 0, w, q0, q1;
-    if (h->n_times > 1 && hdi_degree_open(h->heat) &&
-        !(x->query->mass == 1 && h->heat->source->B))
-        windows = hdi_shared_windows(h->times, h->n_times, tol);
+    const double tol = x->query->distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
+    const int can = h->n_times > 1 && hdi_degree_open(h->heat) &&
+                    !(x->query->mass == 1 && h->heat->source->B);
+    const int32_t windows = can ? hdi_shared_windows(h->times, h->n_times, tol) : 0;
+    int32_t w, q0, q1;
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
         hd_rational set;
         memset(&set, 0, sizeof set);
         q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
         (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol);
-        hdi_estimate_inversion(x, &set, q1 - q0, c);
+        hdi_estimate_set(x, &set, q1 - q0, c);
     }
     return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
 }
 
-/* Diagonals, traces and distances by poles: all times together if the run does so, else one by one, each as
- * the last time. Bytes are enough for both, since the run may fall back to the latter. In bytes_most the
- * highest degree takes over. */
-static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
+/* Diagonals, traces and distances by poles: the first `early` times together if the run does so, else all one
+ * by one, each as the last time. Bytes are enough for both, since the run may fall back to the latter. */
+static void hdi_estimate_inverses(const hdi_estimate *x, int32_t early, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    const hd_heat *heat = h->heat;
-    const int sure = x->query->distance && hdi_degree_open(heat) &&
-                     hdi_distance_sure(heat, x->query->distance, h->t / x->unit);
-    hd_cost by[2];
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t n_times = h->n_times;
+    double most;
+    hd_cost one;
     hd_rational set;
-    int32_t i, one;
-    memset(by, 0, sizeof by);
+    memset(&one, 0, sizeof one);
     h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
-    for (i = 0; i < 2; i++) {
-        h->degree = i == 1 && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
-        if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, by + i);
-    }
+    most = hdi_estimate_most(x);
+    if (kind && hdi_degree_open(h->heat) && hdi_distance_sure(h->heat, kind, h->t / x->unit) &&
+        most <= hdi_bytes_left(h->heat->ctx)) h->degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, &one);
     h->degree = 0;
-    one = sure && by[1].bytes <= hdi_bytes_left(heat->ctx);
-    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        by[1].bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1, 0)));
+    if (early > 0) h->n_times = early;
     if (!hdi_estimate_shared(x, c)) {
-        memset(c, 0, sizeof *c);
-        c->flops = h->n_times * by[one].flops;
-        c->seconds = h->n_times * by[one].seconds;
+        *c = one;
+        h->n_times = 1;
     }
+    c->flops *= (double)n_times / h->n_times;
+    c->seconds *= (double)n_times / h->n_times;
+    h->n_times = n_times;
     c->possible = 1;
-    c->bytes = hdi_max(c->bytes, by[one].bytes);
-    c->bytes_most = hdi_max(c->bytes, by[1].bytes);
+    c->bytes = hdi_max(c->bytes, one.bytes);
+    c->bytes_most = hdi_max(c->bytes, most);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
 
@@ -22776,15 +22763,15 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
     const int forms = x->query->distance->power > 1;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double columns = (double)x->k + (double)HDI_PROBES;
+    const double k = x->h->ask.k;
     c->possible = 1;
-    hdi_fill_cost(f, 1, 1 + HDI_INVERT, columns * (forms ? 4 : 2), 0, c);
+    hdi_fill_cost(f, 1, 1 + HDI_INVERT, (k + (double)HDI_PROBES) * (forms ? 4 : 2), 0, c);
     hdi_fill_cost(f, HDI_PACK, forms ? 1 + HDI_INVERT : 0, 0, 0, c);
     c->bytes = 8 * f.stored * (forms ? 9 : 1);
     if (heat->elim.ctx)
         c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
                    16 * (double)hdi_ground_room(&heat->elim);
-    c->bytes += 40 * f.n + 16.0 * heat->source->n + 48.0 * x->k + HDI_ESTIMATE_SMALL;
+    c->bytes += 40 * f.n + 16.0 * heat->source->n + 48 * k + x->held;
     c->bytes_most = c->bytes;
 }
 
@@ -22819,56 +22806,43 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Adds the bytes of eigenpairs, which may come before or after poles at any time: while they are found, and
- * then beside poles. */
-static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
-    const hdi_heat_call *h = x->h;
-    const hd_laplacian *lap = h->heat->source;
-    const int twice = x->query->distance && x->query->distance->mass > 0 && lap->B;
-    const double bytes = c->bytes, most = c->bytes_most;
-    int32_t q;
-    for (q = 0; q < h->n_times; q++) {
-        const int32_t count = hdi_estimate_count(x, q);
-        const double held = 8.0 * lap->n * ((twice ? 2.0 : 1.0) * count + 5);
-        const hd_cost pairs = hdi_estimate_pairs(h->heat, count);
-        if (!hdi_task_near(&x->task, h->times[q] / x->unit, HDI_MODES_MOST)) continue;
-        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most + held, pairs.bytes_most));
-        if (q == 0 || !hdi_task_first(&x->task, h->times[q] / x->unit)) continue;
-        c->bytes = hdi_max(c->bytes, hdi_max(bytes + held, pairs.bytes));
-    }
+/* The most that eigenpairs for time q take while they are found, times over, and then beside other bytes. */
+static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over, double bytes) {
+    const hd_heat *heat = x->h->heat;
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t count = hdi_estimate_count(x, q);
+    const double vectors = (kind && kind->mass > 0 && heat->source->B ? 2.0 : 1.0) * count + 5;
+    return hdi_max(bytes + 8 * vectors * heat->source->n,
+                   over * (hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL));
 }
 
 /* ---- estimates of queries ---- */
 
-/* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
- * poles, once; then poles do the other times, or all if there is no room for pairs. */
+/* A query at times, by poles or by what the run picks. Where few eigenpairs serve, from time `few` on, they
+ * take about as long as poles, once; then poles do the other times, or all if there is no room for pairs.
+ * From time `some` on they may help. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, fewer;
-    int32_t early = n_times, count;
-    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
-    if ((x->query->by == HDI_BY_INVERSION || early == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
-    if (x->query->by == HDI_BY_SOLVES) (void)hdi_estimate_solves(x);
-    else hdi_estimate_inverses(x, c);
-    if (x->query->by == HDI_BY_INVERSION && early > 0 && early < n_times) {
-        h->n_times = early;
-        hdi_estimate_inverses(x, &fewer);
-        h->n_times = n_times;
-        c->bytes = hdi_max(c->bytes, fewer.bytes);
-        c->bytes_most = hdi_max(c->bytes_most, fewer.bytes_most);
-    }
-    count = hdi_estimate_count(x, early == 0 ? 0 : n_times - 1);
-    if (early == 0 && hdi_modes_need(heat, count) <= hdi_bytes_left(heat->ctx)) {
+    const int32_t n_times = h->n_times, inverses = x->query->by == HDI_BY_INVERSION;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
+    int32_t some = 0, few = n_times;
+    while (few > 0 && hdi_task_first(&x->task, h->times[few - 1] / x->unit)) few--;
+    while (some < few && !hdi_task_near(&x->task, h->times[some] / x->unit, HDI_MODES_MOST)) some++;
+    if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
+    if (inverses) hdi_estimate_inverses(x, few, c);
+    else (void)hdi_estimate_solves(x);
+    if (few == 0 && hdi_modes_need(heat, hdi_estimate_count(x, 0)) <= hdi_bytes_left(heat->ctx)) {
         x->to->method = HD_METHOD_DIRECT;
         x->to->reason = HDI_MODES_REASON;
-        if (count <= heat->modes.s.count) {      /* they are there */
-            c->flops = 6.0 * heat->source->n * count * (x->k + 1);
+        if (hdi_estimate_count(x, 0) <= heat->modes.s.count) {   /* they are there */
+            c->flops = 6.0 * heat->source->n * hdi_estimate_count(x, 0) * (h->ask.k + 1);
             c->seconds = 1.5e-9 * c->flops;
         }
     }
-    hdi_estimate_help(x, x->to->cost + x->to->method);
+    c = x->to->cost + x->to->method;
+    if (few > 0 && few < n_times) c->bytes = hdi_estimate_beside(x, few, 1, c->bytes);
+    if (some < n_times) c->bytes_most = hdi_estimate_beside(x, some, HDI_MODES_OVER, c->bytes_most);
     return h->e->status;
 }
 
@@ -22879,37 +22853,35 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     const int pairs = query->query == HD_QUERY_PAIRS;
     const int32_t times = query->distance && !pairs ? query->distance->time : 1;
     const double n = heat->source->n;
-    hd_cost *direct = to->cost + HD_METHOD_DIRECT;
+    hd_cost *c = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
     memset(&x, 0, sizeof x);
     x.h = h;
     x.query = query;
     x.to = to;
-    x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
+    x.held = HDI_ESTIMATE_SMALL;
+    h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
     to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (!hdi_query_timed(query)) {
+    if (query->by >= HDI_BY_GROUND) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
-        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
-        else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
+        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, c);
+        else *c = hdi_estimate_pairs(heat, hdi_low32(h->ask.k, heat->source->n_active));
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : x.k);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : h->ask.k);
     else hdi_fading_task(&x.task, h);
-    if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
+    if (hdi_heat_sort_times(h, times, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
-    h->t = h->times[h->n_times - 1];
-    if (h->t == 0 && query->by == HDI_BY_SOLVES) {
-        to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
-        to->reason = "t = 0";
-        to->cost[to->method].possible = 1;
-        to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
-        return HD_OK;
-    }
-    if (pairs)
-        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
-    return hdi_estimate_times(&x);
+    if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
+    if (h->t > 0 || query->by != HDI_BY_SOLVES) return hdi_estimate_times(&x);
+    to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
+    to->reason = "t = 0";
+    c = to->cost + to->method;
+    c->possible = 1;
+    c->bytes = c->bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
+    return HD_OK;
 }
 
 /* What is known when the call's own arrays are gone. */
@@ -22923,13 +22895,16 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
-static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
-    if (query->by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+/* Checks the query, and its times if it has some. */
+static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t n_times,
+                                    const double *t, int32_t k) {
+    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
         return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    return query->by == HDI_BY_SOLVES ? HD_OK : hdi_direct_only(h);
+    if (query->by != HDI_BY_SOLVES && hdi_direct_only(h) < 0) return h->e->status;
+    return query->by == HDI_BY_GROUND ? HD_OK : hdi_times_check(h, n_times, t, query->by != HDI_BY_SOLVES);
 }
 
 /* ==== [29] geodesic ====
@@ -24617,16 +24592,14 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row row = hdi_query_of(query);
+    const hdi_query_row *row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, &row, k) >= 0 && hdi_query_timed(&row))
-        (void)hdi_times_check(&h, n_times, t, row.by == HDI_BY_INVERSION);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, &row, k, &found);
+    else if (hdi_estimate_check(&h, row, n_times, t, k) >= 0) (void)hdi_estimate_run(&h, row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
