@@ -17714,17 +17714,6 @@ static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
 
-/* Scales a field by a power of two, so that its values are near one. */
-static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
-    double most = 0;
-    int32_t i;
-    int exponent = 0;
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
-    if (most > 0) frexp(most, &exponent);
-    lane->exponent = exponent;
-    for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
-}
-
 /* Bound on what rounding does to B f for a full B, in the B norm after B^-1. It is large where f lies along
  * eigenvectors of B with small eigenvalues. */
 static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
@@ -17804,65 +17793,57 @@ static void hdi_lane_terms_mass(const hd_laplacian *lap, const hdi_terms *c, hdi
     }
 }
 
-/* The column of a source. One without rows needs no solve, and is skipped. */
-static hd_status hdi_heat_load_column(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
+/* A field into x by rows, scaled by a power of two so that its values are near one. */
+static void hdi_lane_field(const hd_laplacian *lap, const double *f, hdi_lane *lane, double *x) {
+    double most = 0;
+    int32_t i;
+    hdi_gather(lap, f, x);
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(x[i]));
+    if (most > 0) frexp(most, &lane->exponent);
+    for (i = 0; i < lap->n_active; i++) x[i] = ldexp(x[i], -lane->exponent);
+}
+
+/* Field and right-hand side of item q: what is given is f or, of adjoints and k_t, the right-hand side. A
+ * source without rows needs no solve, and is skipped. */
+static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const int plain = h->ask.query == HDI_QUERY_OPERATOR;
-    const double norm = hdi_lane_terms(lap, c, plain ? lane->f : lane->rhs);
-    double sums = c->weight ? (double)c->n * DBL_EPSILON : 0;
-    lane->skip = norm == 0;
-    if (lane->skip) return HD_OK;
-    if (h->watching && !c->weight) lane->watch = lap->row[c->one];
-    if (!plain && hdi_lane_bounded(h)) {
-        memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
-        hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-        lane->f_norm = norm * hdi_ratio_root(lap);
-        lane->rhs_off = sums * lane->f_norm;
-        return HD_OK;
-    }
-    if (plain) {
-        hdi_lane_terms_mass(lap, c, lane);
-        if (c->weight) {
-            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-            sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
+    const hdi_query query = h->ask.query;
+    const int fields = hdi_query_fields(query);
+    const int given = query == HDI_QUERY_FIELD || query == HDI_QUERY_OPERATOR;
+    const hdi_terms c = fields ? hdi_terms_vertex(0) : hdi_heat_source(h, q);
+    double *x = given ? lane->f : lane->rhs, sums = c.weight ? (double)c.n * DBL_EPSILON : 0;
+    lane->status = HD_OK;
+    hdi_lane_clear_off(lane);
+    lane->steps = lane->skip = 0;
+    lane->exponent = 0;
+    lane->f_off = lane->rhs_off = 0;
+    lane->watch = h->watching && !fields && !c.weight ? lap->row[c.one] : -1;
+    lane->dual = query == HDI_QUERY_ADJOINT;
+    if (fields) {
+        hdi_lane_field(lap, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
+    } else {
+        lane->f_norm = hdi_lane_terms(lap, &c, x);
+        lane->skip = lane->f_norm == 0;
+        if (lane->skip) return HD_OK;
+        if (!given && hdi_lane_bounded(h)) {
+            memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
+            lane->f_norm *= hdi_ratio_root(lap);
+            hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+            lane->rhs_off = sums * lane->f_norm;
+            return HD_OK;
         }
+    }
+    if (given) {
+        if (fields) hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        else hdi_lane_terms_mass(lap, &c, lane);
+        if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
         return h->e->status;
     }
     hdi_heat_measure(lap, lane);
     lane->rhs_off += sums * lane->f_norm;
-    return HD_OK;
-}
-
-/* Field and right-hand side of item q. */
-static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    const hdi_query query = h->ask.query;
-    lane->skip = 0;
-    lane->status = HD_OK;
-    hdi_lane_clear_off(lane);
-    lane->steps = 0;
-    lane->exponent = 0;
-    lane->f_off = lane->rhs_off = 0;
-    lane->watch = -1;
-    lane->dual = query == HDI_QUERY_ADJOINT;
-    if (!hdi_query_fields(query)) {
-        const hdi_terms source = hdi_heat_source(h, q);
-        if (hdi_heat_load_column(h, &source, lane) < 0) return h->e->status;
-        if (lane->skip || (query == HDI_QUERY_SYMMETRIC && hdi_lane_bounded(h))) return HD_OK;
-    } else {
-        hdi_gather(lap, h->ask.F + (size_t)q * h->ask.ldf, lane->f);
-        hdi_lane_unit(lap, lane);
-        if (lane->dual) {
-            memcpy(lane->rhs, lane->f, (size_t)lap->n_active * sizeof *lane->f);
-            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
-        } else {
-            hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-        }
-        hdi_heat_measure(lap, lane);
-    }
-    if ((lane->dual || query == HDI_QUERY_SYMMETRIC) && lap->B) lane->f_off = hdi_lane_f_off(lap, lane);
+    if (!given && lap->B) lane->f_off = hdi_lane_f_off(lap, lane);
     if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
