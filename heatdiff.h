@@ -1765,12 +1765,12 @@ static void hdi_free(hd_context *ctx, void *block) {
 enum { HDI_SCOPE_MOST = 32 };
 
 /* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status
- * serves for many. With a tally, takes are only added up: they give NULL, and that is no error. */
+ * serves for many. Without e takes are only counted: they give NULL, and that is no error. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
-    uint64_t *tally;             /* bytes; NULL: takes are made */
-    char *room;                  /* a part of another block, that is used up first; NULL in a tally */
+    uint64_t bytes;              /* without e: of what was taken */
+    char *room;                  /* a part of another block, that is used up first; NULL without e */
     uint64_t left;               /* bytes of it */
     int32_t n;
     void *block[HDI_SCOPE_MOST];
@@ -1786,35 +1786,25 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     return s;
 }
 
-/* Adds the bytes of a block as hdi_alloc counts them. Sums stay far below 2^64. */
-static void hdi_scope_count(uint64_t *tally, uint64_t count, size_t size) {
-    const uint64_t most = UINT64_C(1) << 60;
-    uint64_t bytes;
-    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, most, &bytes)) bytes = most;
-    *tally = bytes > most - *tally ? most : *tally + bytes;
-}
-
-static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
+static hdi_scope hdi_scope_counting(void) {
     hdi_scope s;
-    hdi_error_clear(e);
-    s = hdi_scope_begin(NULL, e);
-    *tally = 0;
-    s.tally = tally;
+    memset(&s, 0, sizeof s);
     return s;
 }
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
+    const uint64_t most = UINT64_C(1) << 56;     /* sums stay far below 2^64 */
     uint64_t bytes;
     void *p = s->room;
-    if (s->e->status < 0) return NULL;
+    if (s->e && s->e->status < 0) return NULL;
     if (hdi_size(count, size, HDI_ALIGN, s->left, &bytes)) {
         bytes -= bytes % HDI_ALIGN;
         s->left -= bytes;
         s->room += s->room ? bytes : 0;
         return p;
     }
-    if (s->tally) {
-        hdi_scope_count(s->tally, count, size);
+    if (!s->e) {
+        s->bytes += hdi_size(count, size, HDI_ALIGN + HDI_HEADER, most, &bytes) ? bytes : most;
         return NULL;
     }
     if (s->n == HDI_SCOPE_MOST) {                /* a mistake of ours, which tests would see */
@@ -9730,7 +9720,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
-    if (s->tally) return;
+    if (!s->e) return;
     f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), width > 1) : NULL;
     f->ctx = s->ctx;
 }
@@ -9746,15 +9736,11 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hd
     return e->status;
 }
 
-/* The bytes of a factor, or of a guest of another one. */
-static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width, int guest) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor host, f;
-    memset(&host, 0, sizeof host);
-    hdi_factor_take(&f, guest ? &host : NULL, sym, width, &s);
-    return bytes;
+static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
+    hdi_scope s = hdi_scope_counting();
+    hdi_factor f;
+    hdi_factor_take(&f, NULL, sym, width, &s);
+    return s.bytes;
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -10831,9 +10817,8 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, const hd_c
     hdi_forms q;
     const uint64_t room = hdi_forms_make(&q, s, width, a, &temp);
     bytes = ctx->bytes_in_use - bytes;
-    hdi_scope_count(&bytes, room, sizeof(double));
     hdi_scope_end(&temp);
-    return bytes;
+    return bytes + room * sizeof(double) + HDI_ALIGN + HDI_HEADER;
 }
 
 /* ---- an inversion as a pass ---- */
@@ -10933,19 +10918,6 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     size = z->scratch_size * (uint64_t)s->n_tasks + z->top_size;
     z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
-}
-
-/* The bytes of that. Also those of the factor, if asked for; less the room that is there. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope keep = hdi_scope_tally(&bytes, &none);
-    hdi_factor f;
-    hdi_inverse z;
-    keep.left = room;
-    if (factor) hdi_factor_take(&f, NULL, s, width, &keep);
-    hdi_inverse_take(&z, s, width, &keep);
-    return bytes;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -14173,24 +14145,28 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
                               uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
-    uint64_t bytes = 0, most = solves, need;
+    const int bound = after == HDI_AFTER_BOUND;
+    hdi_scope kept = hdi_scope_counting();
+    uint64_t most = solves;
+    hdi_factor f;
+    hdi_inverse z;
     int32_t i;
-    for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_bytes(&m->sym, HDI_PACK, i > 0);
-    if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1, 0);
-    if (after == HDI_AFTER_BOUND) {
-        if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-        need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
-        if (most < need) most = need;
-    }
-    for (i = 0; i < 2 && after > HDI_AFTER_BOUND && e->status >= 0; i++) {
+    for (i = m->n_packs; i < packs; i++)
+        hdi_factor_take(&f, i > 0 ? m->pack : NULL, &m->sym, HDI_PACK, &kept);
+    if (lone && !m->real.ctx) hdi_factor_take(&f, NULL, &m->sym, 1, &kept);
+    if (bound && !m->resolvent) (void)HDI_TAKE(&kept, double, m->sym.n);
+    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+        hdi_scope s = hdi_scope_counting();
         const int32_t width = i == 0 ? 1 : HDI_PACK;
-        if (!(i == 0 ? lone : packs)) continue;
-        need = hdi_inverse_bytes(&m->sym, width, 0, 0);
-        hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-        if (after == HDI_AFTER_FORMS) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
-        if (most < need) most = need;
+        if (bound ? i : !(i == 0 ? lone : packs)) continue;
+        s.left = bound ? hdi_elim_room(m, packs) : 0;
+        if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
+        hdi_inverse_take(&z, &m->sym, width, &s);
+        if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
+        if (after == HDI_AFTER_FORMS) s.bytes += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
+        if (most < s.bytes) most = s.bytes;
     }
-    return bytes + most;
+    return kept.bytes + most;
 }
 
 /* ==== [23] lanczos ====
@@ -15611,16 +15587,22 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
 
 /* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
 static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
-    const uint64_t nnz = (uint64_t)m->lap->L.nnz, n = (uint64_t)m->sym.n;
-    uint64_t held = 0, make = 0, form = 0;
+    const uint64_t nnz = (uint64_t)m->lap->L.nnz;
+    hdi_scope held = hdi_scope_counting(), make = held, form = held;
+    hdi_factor f;
+    hdi_inverse z;
     if (!g->diag) {
-        held = hdi_factor_bytes(&m->sym, 1, 0) + sizeof(double) * hdi_ground_size(m);
-        make = hdi_inverse_bytes(&m->sym, 1, 0, 0) + sizeof(double) * nnz;
+        hdi_factor_take(&f, NULL, &m->sym, 1, &held);
+        (void)HDI_TAKE(&held, double, hdi_ground_size(m));
+        (void)HDI_TAKE(&make, double, nnz);
+        hdi_inverse_take(&z, &m->sym, 1, &make);
     }
-    if (forms && !g->formed)
-        form = hdi_factor_bytes(&m->sym, HDI_PACK, 0) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
-               sizeof(double) * (2 * nnz + 2 * n + hdi_sweep_size(&m->sym, 1, 1));
-    return held + (make > form ? make : form);
+    if (forms && !g->formed) {
+        hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
+        (void)HDI_TAKE(&form, double, 2 * nnz + 2 * (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
+        hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
+    }
+    return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
@@ -17626,7 +17608,7 @@ static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
     if (!m->ctx) return f;
     f.nnz = (double)m->sym.nnz;
     f.flops = m->sym.flops_done;
-    f.stored = (double)hdi_factor_bytes(&m->sym, 1, 0) / 8;
+    f.stored = (double)hdi_factor_bytes(&m->sym, 1) / 8;
     return f;
 }
 
@@ -18316,15 +18298,14 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     const hdi_batches b = hdi_batches_of(&heat->elim, packs, hdi_high32(k, 1));
     const int32_t lanes = hdi_low32(k, b.count * b.width);
-    uint64_t bytes = 0;
+    hdi_scope s = hdi_scope_counting();
     int32_t i;
     for (i = 0; i < lanes; i++)
-        if (i >= heat->n_lanes || !heat->lane[i].f)
-            hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
-    if (lanes > heat->n_lanes) bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
+        if (i >= heat->n_lanes || !heat->lane[i].f) (void)HDI_TAKE(&s, double, hdi_lane_size(&room));
+    if (lanes > heat->n_lanes) s.bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
     if (k > 0 && heat->batch_doubles < b.fresh)  /* in place of the old room */
-        hdi_scope_count(&bytes, b.fresh - heat->batch_doubles, sizeof(double));
-    return bytes;
+        (void)HDI_TAKE(&s, double, b.fresh - heat->batch_doubles);
+    return s.bytes;
 }
 
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
@@ -19656,15 +19637,12 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
     const hdi_elim *m = &heat->elim;
-    const int32_t n = heat->source->n_active;
-    uint64_t bytes;
-    hd_error none;
+    const double n = heat->source->n_active;
     hdi_spec s;
     memset(&s, 0, sizeof s);
-    s.keep = s.runs = hdi_scope_tally(&bytes, &none);
-    hdi_spec_take(&s, n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0);
-    hdi_scope_count(&bytes, 2 * (uint64_t)n * ((uint64_t)count + HDI_SPEC_GAPS), sizeof(double));
-    return (double)bytes + 8 * hdi_heat_fill(heat, m).stored + 16.0 * heat->source->n;
+    hdi_spec_take(&s, heat->source->n_active, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0);
+    return (double)(s.keep.bytes + s.runs.bytes) + 16 * n * ((double)count + (double)HDI_SPEC_GAPS) +
+           8 * hdi_heat_fill(heat, m).stored + 16.0 * heat->source->n;
 }
 
 /* Finds `count` eigenpairs. Returns 0 if that fails, if they are not proven complete, or if there is no room:
@@ -22667,7 +22645,7 @@ static double hdi_estimate_most(const hdi_estimate *x) {
     hdi_estimate_set(x, &set, 1, &c);
     if (!m->ctx || (x->query->by == HDI_BY_SOLVES && !x->query->distance)) return c.bytes;
     return c.bytes + (double)hdi_batches_need(h->heat, 1, hdi_high32(h->ask.k, HDI_PROBES)) +
-           (m->real.ctx ? 0 : (double)hdi_factor_bytes(&m->sym, 1, 0));
+           (m->real.ctx ? 0 : (double)hdi_factor_bytes(&m->sym, 1));
 }
 
 /* Fields, columns and entries: all methods, of which the run picks one. */
@@ -23154,9 +23132,9 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active);
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     /* the last factor, and what is kept of those before */
-    uint64_t need = hdi_factor_bytes(&g->sym, 1, 0);
+    const uint64_t need = hdi_factor_bytes(&g->sym, 1) +
+                          (mean ? 16 : 8) * (uint64_t)g->sym.panel[g->sym.n_super];
     int32_t c;
-    hdi_scope_count(&need, (uint64_t)g->sym.panel[g->sym.n_super], (mean ? 2 : 1) * sizeof(double));
     if (e->status < 0 || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
     hdi_geo_matrix(g, lap, 1, mean ? NULL : g->held, val);
     if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
