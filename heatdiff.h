@@ -17391,34 +17391,27 @@ static double hdi_steps_local(const hd_laplacian *lap) {
     return sum * sum * sum * sum;
 }
 
-/* Steps of Lanczos for the exponential, or those of COCG for all poles together. The former grow with the
- * root of t lambda (Hochbruck, Lubich 1997), the latter with less (Gustafsson 1978), up to the time of the
- * smallest eigenvalue, which is about lambda/n. Solutions at hand give a good start: twice the poles do not
- * take twice as many. On fair triangles this is within 2; thin ones with obtuse angles may take ten times
- * more, or never end. */
-static double hdi_steps(const hd_heat *heat, hd_solver solver, double t, int32_t poles) {
-    const double n = heat->source->n_active, digits = hdi_max(0.1, -log10(heat->opts.tol) / 9);
-    const double x = hdi_min(t * heat->local, n);
-    const double each = solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
-    if (solver == HD_SOLVER_LANCZOS) return 3 + hdi_min(8 * sqrt(x * digits), n);
-    return hdi_min(each * digits * sqrt(poles / 5.0) * (5 + 14 * pow(x, 0.4)),
-                   (double)heat->opts.max_iterations * poles);
-}
-
-/* Adds what k items take at time t. With Lanczos a full B is solved with in every step. */
+/* Adds what k items take at time t by Lanczos for the exponential, or by COCG for all poles together. Steps
+ * of the former grow with the root of t lambda (Hochbruck, Lubich 1997), of the latter with less (Gustafsson
+ * 1978), up to the time of the smallest eigenvalue, which is about lambda/n. Solutions at hand give a good
+ * start: twice the poles do not take twice as many. On fair triangles this is within 2; thin ones with obtuse
+ * angles may take ten times more, or never end. With Lanczos a full B is solved with in every step. */
 static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int32_t poles, double k,
                            hd_cost *c) {
     const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, steps = hdi_steps(heat, solver, t, poles);
-    const double factors = hdi_preconds[heat->opts.precond].entries ? nnz : 0, full = lap->B ? 1 : 0;
+    const hdi_precond_row *precond = hdi_preconds + heat->opts.precond;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, factors = precond->entries ? nnz : 0;
+    const double digits = hdi_max(0.1, -log10(heat->opts.tol) / 9), x = hdi_min(t * heat->local, n);
+    const double lanczos = 3 + hdi_min(8 * sqrt(x * digits), n), each = lap->B ? 21 : 1;
+    const double cocg = (solver == HD_SOLVER_MINRES ? 3.5 : precond->steps) * digits * sqrt(poles / 5.0);
+    const double steps = hdi_min(cocg * (5 + 14 * pow(x, 0.4)), (double)heat->opts.max_iterations * poles);
     if (solver == HD_SOLVER_LANCZOS) {
-        const double each = 1 + 20 * full;
-        c->flops += k * steps * each * (2 * nnz + 12 * n);
-        c->seconds += k * steps * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + steps * 0.4e-6);
+        c->flops += k * lanczos * each * (2 * nnz + 12 * n);
+        c->seconds += k * lanczos * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + lanczos * 0.4e-6);
         return;
     }
-    c->flops += k * steps * ((4 + 4 * full) * nnz + 8 * factors + 40 * n);
-    c->seconds += k * steps * ((12 + 8 * full) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
+    c->flops += k * steps * ((lap->B ? 8 : 4) * nnz + 8 * factors + 40 * n);
+    c->seconds += k * steps * ((lap->B ? 20 : 12) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
     if (heat->fam.filled && heat->fam.t == t) return;
     c->flops += poles * 2 * factors * (nnz / n);
     c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
@@ -17426,6 +17419,8 @@ static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int3
 
 /* The number of poles that columns have by default. */
 enum { HDI_POLES_EXPECTED = 5 };
+
+/* ---- requests and calls ---- */
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
 typedef enum hdi_query {
@@ -17625,6 +17620,8 @@ static void hdi_fill_cost(hdi_fill f, int32_t width, double factors, double solv
                   (made + solves * sweep / (shared ? HDI_SHARED : 1)) / HDI_RATE_BYTES;
 }
 
+/* ---- when only means are left ---- */
+
 /* From this t lambda_max on it is worthwhile to ask whether only the means are left. Beyond the second number
  * exp(-x) is zero in doubles. */
 #define HDI_EQUAL_FROM 1e8
@@ -17670,6 +17667,8 @@ static hd_status hdi_heat_end(hdi_heat_call *h) {
     if (h->err) *h->err = *h->e;
     return h->rep->status;
 }
+
+/* ---- fields and sources into lanes ---- */
 
 /* Norm of f and heat per component, from f and rhs. */
 static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
@@ -17830,6 +17829,8 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     return HD_OK;
 }
 
+/* ---- answers out of lanes ---- */
+
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
     if (h->rate) return h->t > 0 ? 1 / h->ask.t[h->now] : h->heat->scale;
@@ -17944,6 +17945,8 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return h->e->status;
 }
 
+/* ---- the pole set of a call ---- */
+
 /* The error of a uniform set is at most this part of the smallest norm that the answer can have, which is
  * that of its constants. */
 #define HDI_UNIFORM_SHARE 1e-9
@@ -18015,6 +18018,8 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
+
+/* ---- errors of answers ---- */
 
 /* A new ledger for what the method computes. Each lane says how its rounding is known. */
 static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
@@ -22746,17 +22751,14 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 #define HDI_MODES_OVER 1.25
 
 /* The cost of finding `count` of them. */
-static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
+static void hdi_estimate_pairs(const hd_heat *heat, int32_t count, hd_cost *c) {
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    hd_cost c;
-    memset(&c, 0, sizeof c);
-    c.possible = 1;
-    hdi_fill_cost(f, 1, 2 + ceil(count / (double)HDI_SPEC_HALF), 0, 0, &c);
-    c.flops += (2.5 * count + (double)HDI_SPEC_HALF) * (4 * f.nnz + 8 * f.n * count);
-    c.seconds += HDI_MODES_SECONDS * f.n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
-    c.bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-    c.bytes_most = HDI_MODES_OVER * c.bytes;
-    return c;
+    c->possible = 1;
+    hdi_fill_cost(f, 1, 2 + ceil(count / (double)HDI_SPEC_HALF), 0, 0, c);
+    c->flops += (2.5 * count + (double)HDI_SPEC_HALF) * (4 * f.nnz + 8 * f.n * count);
+    c->seconds += HDI_MODES_SECONDS * f.n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
+    c->bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    c->bytes_most = HDI_MODES_OVER * c->bytes;
 }
 
 /* How many are asked for at time q of the call. */
@@ -22825,7 +22827,7 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     if (query->by >= HDI_BY_GROUND) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
         if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, c);
-        else *c = hdi_estimate_pairs(heat, hdi_low32(h->ask.k, heat->source->n_active));
+        else hdi_estimate_pairs(heat, hdi_low32(h->ask.k, heat->source->n_active), c);
         return HD_OK;
     }
     x.unit = times * heat->scale;
