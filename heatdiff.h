@@ -1765,12 +1765,12 @@ static void hdi_free(hd_context *ctx, void *block) {
 enum { HDI_SCOPE_MOST = 32 };
 
 /* Work arrays of one function. After a failed take all further ones give NULL, so one check of e->status
- * serves for many. With a tally, takes are only added up: they give NULL, and that is no error. */
+ * serves for many. Without e takes are only counted: they give NULL, and that is no error. */
 typedef struct hdi_scope {
     hd_context *ctx;
     hd_error *e;
-    uint64_t *tally;             /* bytes; NULL: takes are made */
-    char *room;                  /* a part of another block, that is used up first; NULL in a tally */
+    uint64_t bytes;              /* without e: of what was taken */
+    char *room;                  /* a part of another block, that is used up first; NULL without e */
     uint64_t left;               /* bytes of it */
     int32_t n;
     void *block[HDI_SCOPE_MOST];
@@ -1786,35 +1786,25 @@ static hdi_scope hdi_scope_begin(hd_context *ctx, hd_error *e) {
     return s;
 }
 
-/* Adds the bytes of a block as hdi_alloc counts them. Sums stay far below 2^64. */
-static void hdi_scope_count(uint64_t *tally, uint64_t count, size_t size) {
-    const uint64_t most = UINT64_C(1) << 60;
-    uint64_t bytes;
-    if (!hdi_size(count, size, HDI_ALIGN + HDI_HEADER, most, &bytes)) bytes = most;
-    *tally = bytes > most - *tally ? most : *tally + bytes;
-}
-
-static hdi_scope hdi_scope_tally(uint64_t *tally, hd_error *e) {
+static hdi_scope hdi_scope_counting(void) {
     hdi_scope s;
-    hdi_error_clear(e);
-    s = hdi_scope_begin(NULL, e);
-    *tally = 0;
-    s.tally = tally;
+    memset(&s, 0, sizeof s);
     return s;
 }
 
 static void *hdi_take(hdi_scope *s, uint64_t count, size_t size) {
+    const uint64_t most = UINT64_C(1) << 56;     /* sums stay far below 2^64 */
     uint64_t bytes;
     void *p = s->room;
-    if (s->e->status < 0) return NULL;
+    if (s->e && s->e->status < 0) return NULL;
     if (hdi_size(count, size, HDI_ALIGN, s->left, &bytes)) {
         bytes -= bytes % HDI_ALIGN;
         s->left -= bytes;
         s->room += s->room ? bytes : 0;
         return p;
     }
-    if (s->tally) {
-        hdi_scope_count(s->tally, count, size);
+    if (!s->e) {
+        s->bytes += hdi_size(count, size, HDI_ALIGN + HDI_HEADER, most, &bytes) ? bytes : most;
         return NULL;
     }
     if (s->n == HDI_SCOPE_MOST) {                /* a mistake of ours, which tests would see */
@@ -9730,7 +9720,7 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
     f->chunk_scratch = HDI_TAKE(s, double, f->chunk_size * n_chunks + 1);
     f->pivots = HDI_TAKE(s, hdi_pivots, n_parts + 1);
     if (f->scratch && n_chunks > 0) f->second = f->scratch + f->scratch_size * n_parts + f->top_size;
-    if (s->tally) return;
+    if (!s->e) return;
     f->ops = HDI_HAS_DIRECT ? hdi_kernels_get(hdi_simd_level(s->ctx), width > 1) : NULL;
     f->ctx = s->ctx;
 }
@@ -9746,19 +9736,11 @@ static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hd
     return e->status;
 }
 
-/* The bytes of a factor, or of a guest of another one. */
-static uint64_t hdi_factor_tally(const hdi_symbolic *sym, int32_t width, int guest) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope s = hdi_scope_tally(&bytes, &none);
-    hdi_factor host, f;
-    memset(&host, 0, sizeof host);
-    hdi_factor_take(&f, guest ? &host : NULL, sym, width, &s);
-    return bytes;
-}
-
 static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
-    return hdi_factor_tally(sym, width, 0);
+    hdi_scope s = hdi_scope_counting();
+    hdi_factor f;
+    hdi_factor_take(&f, NULL, sym, width, &s);
+    return s.bytes;
 }
 
 /* Collects what the parts saw. Of several failures that of the lowest pivot is reported: no thread stops a
@@ -10835,9 +10817,8 @@ static uint64_t hdi_forms_bytes(const hdi_symbolic *s, int32_t width, const hd_c
     hdi_forms q;
     const uint64_t room = hdi_forms_make(&q, s, width, a, &temp);
     bytes = ctx->bytes_in_use - bytes;
-    hdi_scope_count(&bytes, room, sizeof(double));
     hdi_scope_end(&temp);
-    return bytes;
+    return bytes + room * sizeof(double) + HDI_ALIGN + HDI_HEADER;
 }
 
 /* ---- an inversion as a pass ---- */
@@ -10937,19 +10918,6 @@ static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t widt
     size = z->scratch_size * (uint64_t)s->n_tasks + z->top_size;
     z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
-}
-
-/* The bytes of that. Also those of the factor, if asked for; less the room that is there. */
-static uint64_t hdi_inverse_bytes(const hdi_symbolic *s, int32_t width, int factor, uint64_t room) {
-    hd_error none;
-    uint64_t bytes;
-    hdi_scope keep = hdi_scope_tally(&bytes, &none);
-    hdi_factor f;
-    hdi_inverse z;
-    keep.left = room;
-    if (factor) hdi_factor_take(&f, NULL, s, width, &keep);
-    hdi_inverse_take(&z, s, width, &keep);
-    return bytes;
 }
 
 /* Inverts the factor; coef, n_sets, wanted (with forms, its x), values and stride are set. Uses the space of
@@ -14177,24 +14145,28 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
                               uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
-    uint64_t bytes = 0, most = solves, need;
+    const int bound = after == HDI_AFTER_BOUND;
+    hdi_scope kept = hdi_scope_counting();
+    uint64_t most = solves;
+    hdi_factor f;
+    hdi_inverse z;
     int32_t i;
-    for (i = m->n_packs; i < packs; i++) bytes += hdi_factor_tally(&m->sym, HDI_PACK, i > 0);
-    if (lone && !m->real.ctx) bytes += hdi_factor_bytes(&m->sym, 1);
-    if (after == HDI_AFTER_BOUND) {
-        if (!m->resolvent) hdi_scope_count(&bytes, (uint64_t)m->sym.n, sizeof *m->resolvent);
-        need = hdi_inverse_bytes(&m->sym, 1, !lone, hdi_elim_room(m, packs));
-        if (most < need) most = need;
-    }
-    for (i = 0; i < 2 && after > HDI_AFTER_BOUND && e->status >= 0; i++) {
+    for (i = m->n_packs; i < packs; i++)
+        hdi_factor_take(&f, i > 0 ? m->pack : NULL, &m->sym, HDI_PACK, &kept);
+    if (lone && !m->real.ctx) hdi_factor_take(&f, NULL, &m->sym, 1, &kept);
+    if (bound && !m->resolvent) (void)HDI_TAKE(&kept, double, m->sym.n);
+    for (i = 0; i < 2 && after != HDI_AFTER_SOLVES && e->status >= 0; i++) {
+        hdi_scope s = hdi_scope_counting();
         const int32_t width = i == 0 ? 1 : HDI_PACK;
-        if (!(i == 0 ? lone : packs)) continue;
-        need = hdi_inverse_bytes(&m->sym, width, 0, 0);
-        hdi_scope_count(&need, HDI_PACK * (uint64_t)n_sets, sizeof(double));
-        if (after == HDI_AFTER_FORMS) need += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
-        if (most < need) most = need;
+        if (bound ? i : !(i == 0 ? lone : packs)) continue;
+        s.left = bound ? hdi_elim_room(m, packs) : 0;
+        if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
+        hdi_inverse_take(&z, &m->sym, width, &s);
+        if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
+        if (after == HDI_AFTER_FORMS) s.bytes += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
+        if (most < s.bytes) most = s.bytes;
     }
-    return bytes + most;
+    return kept.bytes + most;
 }
 
 /* ==== [23] lanczos ====
@@ -15615,16 +15587,22 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
 
 /* Bytes that hdi_ground_make takes at its peak, and with forms hdi_ground_forms after it. */
 static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int forms) {
-    const uint64_t nnz = (uint64_t)m->lap->L.nnz, n = (uint64_t)m->sym.n;
-    uint64_t held = 0, make = 0, form = 0;
+    const uint64_t nnz = (uint64_t)m->lap->L.nnz;
+    hdi_scope held = hdi_scope_counting(), make = held, form = held;
+    hdi_factor f;
+    hdi_inverse z;
     if (!g->diag) {
-        held = hdi_factor_bytes(&m->sym, 1) + sizeof(double) * hdi_ground_size(m);
-        make = hdi_inverse_bytes(&m->sym, 1, 0, 0) + sizeof(double) * nnz;
+        hdi_factor_take(&f, NULL, &m->sym, 1, &held);
+        (void)HDI_TAKE(&held, double, hdi_ground_size(m));
+        (void)HDI_TAKE(&make, double, nnz);
+        hdi_inverse_take(&z, &m->sym, 1, &make);
     }
-    if (forms && !g->formed)
-        form = hdi_factor_bytes(&m->sym, HDI_PACK) + hdi_inverse_bytes(&m->sym, HDI_PACK, 0, 0) +
-               sizeof(double) * (2 * nnz + 2 * n + hdi_sweep_size(&m->sym, 1, 1));
-    return held + (make > form ? make : form);
+    if (forms && !g->formed) {
+        hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
+        (void)HDI_TAKE(&form, double, 2 * nnz + 2 * (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
+        hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
+    }
+    return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
@@ -15814,17 +15792,6 @@ static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_s
     s->h = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)s->n_group);
     s->part = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)hdi_spec_chunks(rows));
     s->noise = HDI_TAKE(&s->runs, double, 2 * n);
-}
-
-/* Bytes that a computation takes: its arrays, and the vectors twice in the end. */
-static double hdi_spec_need(int32_t n, int32_t count, uint64_t n_sweep) {
-    uint64_t bytes;
-    hd_error e;
-    hdi_spec s;
-    memset(&s, 0, sizeof s);
-    s.keep = s.runs = hdi_scope_tally(&bytes, &e);
-    hdi_spec_take(&s, n, count, n_sweep);
-    return (double)bytes + 2.0 * sizeof(double) * n * ((double)count + (double)HDI_SPEC_GAPS);
 }
 
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double below, double tol,
@@ -17424,34 +17391,27 @@ static double hdi_steps_local(const hd_laplacian *lap) {
     return sum * sum * sum * sum;
 }
 
-/* Steps of Lanczos for the exponential, or those of COCG for all poles together. The former grow with the
- * root of t lambda (Hochbruck, Lubich 1997), the latter with less (Gustafsson 1978), up to the time of the
- * smallest eigenvalue, which is about lambda/n. Solutions at hand give a good start: twice the poles do not
- * take twice as many. On fair triangles this is within 2; thin ones with obtuse angles may take ten times
- * more, or never end. */
-static double hdi_steps(const hd_heat *heat, hd_solver solver, double t, int32_t poles) {
-    const double n = heat->source->n_active, digits = hdi_max(0.1, -log10(heat->opts.tol) / 9);
-    const double x = hdi_min(t * heat->local, n);
-    const double each = solver == HD_SOLVER_MINRES ? 3.5 : hdi_preconds[heat->opts.precond].steps;
-    if (solver == HD_SOLVER_LANCZOS) return 3 + hdi_min(8 * sqrt(x * digits), n);
-    return hdi_min(each * digits * sqrt(poles / 5.0) * (5 + 14 * pow(x, 0.4)),
-                   (double)heat->opts.max_iterations * poles);
-}
-
-/* Adds what k items take at time t. With Lanczos a full B is solved with in every step. */
+/* Adds what k items take at time t by Lanczos for the exponential, or by COCG for all poles together. Steps
+ * of the former grow with the root of t lambda (Hochbruck, Lubich 1997), of the latter with less (Gustafsson
+ * 1978), up to the time of the smallest eigenvalue, which is about lambda/n. Solutions at hand give a good
+ * start: twice the poles do not take twice as many. On fair triangles this is within 2; thin ones with obtuse
+ * angles may take ten times more, or never end. With Lanczos a full B is solved with in every step. */
 static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int32_t poles, double k,
                            hd_cost *c) {
     const hd_laplacian *lap = heat->source;
-    const double nnz = (double)lap->L.nnz, n = lap->n_active, steps = hdi_steps(heat, solver, t, poles);
-    const double factors = hdi_preconds[heat->opts.precond].entries ? nnz : 0, full = lap->B ? 1 : 0;
+    const hdi_precond_row *precond = hdi_preconds + heat->opts.precond;
+    const double nnz = (double)lap->L.nnz, n = lap->n_active, factors = precond->entries ? nnz : 0;
+    const double digits = hdi_max(0.1, -log10(heat->opts.tol) / 9), x = hdi_min(t * heat->local, n);
+    const double lanczos = 3 + hdi_min(8 * sqrt(x * digits), n), each = lap->B ? 21 : 1;
+    const double cocg = (solver == HD_SOLVER_MINRES ? 3.5 : precond->steps) * digits * sqrt(poles / 5.0);
+    const double steps = hdi_min(cocg * (5 + 14 * pow(x, 0.4)), (double)heat->opts.max_iterations * poles);
     if (solver == HD_SOLVER_LANCZOS) {
-        const double each = 1 + 20 * full;
-        c->flops += k * steps * each * (2 * nnz + 12 * n);
-        c->seconds += k * steps * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + steps * 0.4e-6);
+        c->flops += k * lanczos * each * (2 * nnz + 12 * n);
+        c->seconds += k * lanczos * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + lanczos * 0.4e-6);
         return;
     }
-    c->flops += k * steps * ((4 + 4 * full) * nnz + 8 * factors + 40 * n);
-    c->seconds += k * steps * ((12 + 8 * full) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
+    c->flops += k * steps * ((lap->B ? 8 : 4) * nnz + 8 * factors + 40 * n);
+    c->seconds += k * steps * ((lap->B ? 20 : 12) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
     if (heat->fam.filled && heat->fam.t == t) return;
     c->flops += poles * 2 * factors * (nnz / n);
     c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
@@ -17459,6 +17419,8 @@ static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int3
 
 /* The number of poles that columns have by default. */
 enum { HDI_POLES_EXPECTED = 5 };
+
+/* ---- requests and calls ---- */
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
 typedef enum hdi_query {
@@ -17621,27 +17583,44 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
 
 /* ---- what factors take ---- */
 
-/* What is known of the factors of elim or few, or guessed before the analysis. */
-typedef struct hdi_fill { double nnz, flops, stored, real_stored, analysis; } hdi_fill;
+/* What is known of the factors of elim or few, or guessed before the analysis: non-zeros and flops of a real
+ * one, doubles of it, and seconds that the analysis will take. */
+typedef struct hdi_fill { double n, nnz, flops, stored, analysis; } hdi_fill;
 
 /* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
  * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
  * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
 static hdi_fill hdi_fill_guess(double n, double entries) {
-    const double wide = hdi_max(1, entries / (10 * n)), stored = 40 * n * wide;
-    const hdi_fill f = {30 * n * wide, 22 * n * sqrt(n) * wide * wide, stored, stored,
+    const double wide = hdi_max(1, entries / (10 * n));
+    const hdi_fill f = {n, 30 * n * wide, 22 * n * sqrt(n) * wide * wide, 40 * n * wide,
                         HDI_ROW_ANALYSIS * n * wide};
     return f;
 }
 
 static hdi_fill hdi_heat_fill(const hd_heat *heat, const hdi_elim *m) {
-    const hdi_symbolic *s = &m->sym;
-    hdi_fill f = {(double)s->nnz, s->flops_done, (double)(s->stored + s->work), 0, 0};
-    if (m->ctx) f.real_stored = (double)(s->panel[s->n_super] + s->work);
-    else f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
-    if (m == &heat->few) f.analysis *= 0.4;
+    hdi_fill f = hdi_fill_guess(heat->source->n_active, (double)heat->source->L.nnz);
+    f.analysis *= m->ctx ? 0 : m == &heat->few ? 0.4 : 1;
+    if (!m->ctx) return f;
+    f.nnz = (double)m->sym.nnz;
+    f.flops = m->sym.flops_done;
+    f.stored = (double)hdi_factor_bytes(&m->sym, 1) / 8;
     return f;
 }
+
+/* Sweeps are faster by this factor where several right-hand sides share them. */
+#define HDI_SHARED 2.5
+
+/* Adds so many factorisations of this width, 1 or HDI_PACK, and solves, which share sweeps or do not. */
+static void hdi_fill_cost(hdi_fill f, int32_t width, double factors, double solves, int shared, hd_cost *c) {
+    const int pack = width > 1;
+    const double flops = (pack ? 16 : 1) * factors * f.flops, made = (pack ? 180 : 0) * factors * f.nnz;
+    const double sweep = pack ? 100 * f.nnz + 600 * f.n : 16 * f.nnz + 100 * f.n;
+    c->flops += flops + (pack ? 64 : 4) * solves * f.nnz;
+    c->seconds += flops / (pack ? HDI_RATE_PACK : HDI_RATE_REAL) +
+                  (made + solves * sweep / (shared ? HDI_SHARED : 1)) / HDI_RATE_BYTES;
+}
+
+/* ---- when only means are left ---- */
 
 /* From this t lambda_max on it is worthwhile to ask whether only the means are left. Beyond the second number
  * exp(-x) is zero in doubles. */
@@ -17689,6 +17668,8 @@ static hd_status hdi_heat_end(hdi_heat_call *h) {
     return h->rep->status;
 }
 
+/* ---- fields and sources into lanes ---- */
+
 /* Norm of f and heat per component, from f and rhs. */
 static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     const double f2 = hdi_dot(lane->f, lane->rhs, lap->n_active);
@@ -17712,17 +17693,6 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
 static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
-}
-
-/* Scales a field by a power of two, so that its values are near one. */
-static void hdi_lane_unit(const hd_laplacian *lap, hdi_lane *lane) {
-    double most = 0;
-    int32_t i;
-    int exponent = 0;
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(lane->f[i]));
-    if (most > 0) frexp(most, &exponent);
-    lane->exponent = exponent;
-    for (i = 0; i < lap->n_active; i++) lane->f[i] = ldexp(lane->f[i], -exponent);
 }
 
 /* Bound on what rounding does to B f for a full B, in the B norm after B^-1. It is large where f lies along
@@ -17804,68 +17774,62 @@ static void hdi_lane_terms_mass(const hd_laplacian *lap, const hdi_terms *c, hdi
     }
 }
 
-/* The column of a source. One without rows needs no solve, and is skipped. */
-static hd_status hdi_heat_load_column(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
+/* A field into x by rows, scaled by a power of two so that its values are near one. */
+static void hdi_lane_field(const hd_laplacian *lap, const double *f, hdi_lane *lane, double *x) {
+    double most = 0;
+    int32_t i;
+    hdi_gather(lap, f, x);
+    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(x[i]));
+    if (most > 0) frexp(most, &lane->exponent);
+    for (i = 0; i < lap->n_active; i++) x[i] = ldexp(x[i], -lane->exponent);
+}
+
+/* Field and right-hand side of item q: what is given is f or, of adjoints and k_t, the right-hand side. A
+ * source without rows needs no solve, and is skipped. */
+static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const int plain = h->ask.query == HDI_QUERY_OPERATOR;
-    const double norm = hdi_lane_terms(lap, c, plain ? lane->f : lane->rhs);
-    double sums = c->weight ? (double)c->n * DBL_EPSILON : 0;
-    lane->skip = norm == 0;
-    if (lane->skip) return HD_OK;
-    if (h->watching && !c->weight) lane->watch = lap->row[c->one];
-    if (!plain && hdi_lane_bounded(h)) {
-        memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
-        hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-        lane->f_norm = norm * hdi_ratio_root(lap);
-        lane->rhs_off = sums * lane->f_norm;
-        return HD_OK;
-    }
-    if (plain) {
-        hdi_lane_terms_mass(lap, c, lane);
-        if (c->weight) {
-            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-            sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
+    const hdi_query query = h->ask.query;
+    const int fields = hdi_query_fields(query);
+    const int given = query == HDI_QUERY_FIELD || query == HDI_QUERY_OPERATOR;
+    const hdi_terms c = fields ? hdi_terms_vertex(0) : hdi_heat_source(h, q);
+    double *x = given ? lane->f : lane->rhs, sums = c.weight ? (double)c.n * DBL_EPSILON : 0;
+    lane->status = HD_OK;
+    hdi_lane_clear_off(lane);
+    lane->steps = lane->skip = 0;
+    lane->exponent = 0;
+    lane->f_off = lane->rhs_off = 0;
+    lane->watch = h->watching && !fields && !c.weight ? lap->row[c.one] : -1;
+    lane->dual = query == HDI_QUERY_ADJOINT;
+    if (fields) {
+        hdi_lane_field(lap, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
+    } else {
+        lane->f_norm = hdi_lane_terms(lap, &c, x);
+        lane->skip = lane->f_norm == 0;
+        if (lane->skip) return HD_OK;
+        if (!given && hdi_lane_bounded(h)) {
+            memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
+            lane->f_norm *= hdi_ratio_root(lap);
+            hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+            lane->rhs_off = sums * lane->f_norm;
+            return HD_OK;
         }
+    }
+    if (given) {
+        if (fields) hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        else hdi_lane_terms_mass(lap, &c, lane);
+        if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
+        if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
         return h->e->status;
     }
     hdi_heat_measure(lap, lane);
     lane->rhs_off += sums * lane->f_norm;
-    return HD_OK;
-}
-
-/* Field and right-hand side of item q. */
-static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    const hdi_query query = h->ask.query;
-    lane->skip = 0;
-    lane->status = HD_OK;
-    hdi_lane_clear_off(lane);
-    lane->steps = 0;
-    lane->exponent = 0;
-    lane->f_off = lane->rhs_off = 0;
-    lane->watch = -1;
-    lane->dual = query == HDI_QUERY_ADJOINT;
-    if (!hdi_query_fields(query)) {
-        const hdi_terms source = hdi_heat_source(h, q);
-        if (hdi_heat_load_column(h, &source, lane) < 0) return h->e->status;
-        if (lane->skip || (query == HDI_QUERY_SYMMETRIC && hdi_lane_bounded(h))) return HD_OK;
-    } else {
-        hdi_gather(lap, h->ask.F + (size_t)q * h->ask.ldf, lane->f);
-        hdi_lane_unit(lap, lane);
-        if (lane->dual) {
-            memcpy(lane->rhs, lane->f, (size_t)lap->n_active * sizeof *lane->f);
-            if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) return h->e->status;
-        } else {
-            hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-            lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
-        }
-        hdi_heat_measure(lap, lane);
-    }
-    if ((lane->dual || query == HDI_QUERY_SYMMETRIC) && lap->B) lane->f_off = hdi_lane_f_off(lap, lane);
+    if (!given && lap->B) lane->f_off = hdi_lane_f_off(lap, lane);
     if (h->rate) hdi_lane_moving(lap, lane);
     return HD_OK;
 }
+
+/* ---- answers out of lanes ---- */
 
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
@@ -17977,6 +17941,8 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     return hdi_heat_make_lanes(h->heat, h->n_lanes, room, h->e);
 }
 
+/* ---- the pole set of a call ---- */
+
 /* The error of a uniform set is at most this part of the smallest norm that the answer can have, which is
  * that of its constants. */
 #define HDI_UNIFORM_SHARE 1e-9
@@ -18048,6 +18014,8 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     }
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
+
+/* ---- errors of answers ---- */
 
 /* A new ledger for what the method computes. Each lane says how its rounding is known. */
 static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
@@ -18335,63 +18303,21 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
     const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
     const hdi_batches b = hdi_batches_of(&heat->elim, packs, hdi_high32(k, 1));
     const int32_t lanes = hdi_low32(k, b.count * b.width);
-    uint64_t bytes = 0;
+    hdi_scope s = hdi_scope_counting();
     int32_t i;
     for (i = 0; i < lanes; i++)
-        if (i >= heat->n_lanes || !heat->lane[i].f)
-            hdi_scope_count(&bytes, hdi_lane_size(&room), sizeof(double));
-    if (lanes > heat->n_lanes) bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
+        if (i >= heat->n_lanes || !heat->lane[i].f) (void)HDI_TAKE(&s, double, hdi_lane_size(&room));
+    if (lanes > heat->n_lanes) s.bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
     if (k > 0 && heat->batch_doubles < b.fresh)  /* in place of the old room */
-        hdi_scope_count(&bytes, b.fresh - heat->batch_doubles, sizeof(double));
-    return bytes;
+        (void)HDI_TAKE(&s, double, b.fresh - heat->batch_doubles);
+    return s.bytes;
 }
 
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
 
-/* Flops and seconds of inverting factors, relative to making them. By counting, with and without full B; by
- * time, on meshes of 10K to 150K vertices. */
-#define HDI_INVERT_FLOPS 2.0
-#define HDI_INVERT_SECONDS 2.0
-#define HDI_FORMS_SECONDS 4.0
-/* Sweeps are faster by this factor where several right-hand sides share them. */
-#define HDI_SHARED 2.5
-
-/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
- * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. Returns the seconds of the
- * factors. */
-static double hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
-                             int32_t k, double held, hd_cost *c) {
-    hd_heat *heat = h->heat;
-    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const int inverse = after >= HDI_AFTER_INVERSE, bound = after == HDI_AFTER_BOUND;
-    const double n = heat->source->n_active, lone = hdi_set_lone(set);
-    /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
-    const double packs = hdi_high32(1, hdi_set_packs(set));
-    const double solves = inverse ? (double)k + (double)HDI_PROBES : k;
-    const double factors = packs * (16 * f.flops / HDI_RATE_PACK + 180 * f.nnz / HDI_RATE_BYTES) +
-                           lone * f.flops / HDI_RATE_REAL;
-    const double longer = after == HDI_AFTER_FORMS ? HDI_FORMS_SECONDS : inverse ? HDI_INVERT_SECONDS : 0;
-    double bytes = 8 * (8 * packs + 1) * f.stored + 200 * n + hdi_min(k, HDI_LANES) * 140 * n;
-    k = hdi_high32(k, inverse ? HDI_PROBES : 0);
-    if (heat->elim.ctx) {
-        const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), k);
-        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
-        if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
-            bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
-        /* the solves' arrays of one time stay while the next one is factorised */
-        if (h->n_times > 1) bytes += (double)solving;
-    } else if (inverse) {
-        bytes += 16 * n * n_sets;
-    }
-    c->possible = 1;
-    c->flops += (16 * packs + lone) * f.flops * (inverse ? 1 + HDI_INVERT_FLOPS : 1) +
-                (bound ? (1 + HDI_INVERT_FLOPS - lone) * f.flops : 0) + solves * (64 * packs + 4) * f.nnz;
-    /* without the bound, which a choice of the method has no need to look at */
-    c->seconds += factors * (1 + longer) +
-                  solves * packs * (100 * f.nnz + 600 * n) / (HDI_RATE_BYTES * (k > 1 ? HDI_SHARED : 1));
-    c->bytes = hdi_max(c->bytes, bytes + held);
-    return factors;
-}
+/* Inverting factors takes as many times the work of making them: by counting; and by time, with a diagonal B,
+ * on meshes of 10K to 150K vertices. */
+#define HDI_INVERT 2.0
 
 /* Are the factors of the poles there? The default degree of fields is not known yet: that of the last call is
  * assumed. */
@@ -18401,16 +18327,43 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
+/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
+ * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
+static void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
+                           int32_t k, double held, hd_cost *c) {
+    hd_heat *heat = h->heat;
+    const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
+    const int inverse = after >= HDI_AFTER_INVERSE;
+    const int32_t probes = inverse ? HDI_PROBES : 0;
+    /* a real pole alone counts as a pack: where all is so cheap iterations have better bounds */
+    const double packs = hdi_high32(1, hdi_set_packs(set)), made = hdi_heat_at_hand(h) ? 0 : 1;
+    const double times = made * (inverse ? 1 + HDI_INVERT : 1), solves = (double)k + probes;
+    double bytes = 64 * packs * f.stored + 8 * f.stored + 200 * f.n + 16 * f.n * n_sets +
+                   hdi_min(k, HDI_LANES) * 140 * f.n;
+    hdi_fill_cost(f, HDI_PACK, packs * times, packs * solves, k > 1, c);
+    hdi_fill_cost(f, 1, hdi_set_lone(set) * times, 0, 0, c);
+    /* without its seconds, which a choice of the method has no need to look at */
+    if (after == HDI_AFTER_BOUND) c->flops += (1 + HDI_INVERT - hdi_set_lone(set)) * f.flops;
+    if (heat->elim.ctx) {
+        const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), hdi_high32(k, probes));
+        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
+        if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
+            bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
+        /* the solves' arrays of one time stay while the next one is factorised */
+        if (h->n_times > 1) bytes += (double)solving;
+    }
+    c->possible = 1;
+    c->bytes = hdi_max(c->bytes, bytes + held);
+}
+
 /* The cost of fields and columns at the times of the call. */
 static void hdi_direct_cost(hdi_heat_call *h, double least, hd_cost *c) {
     hd_rational set;
-    double factors;
     (void)least;
     if (hdi_factors_unasked(h->heat) || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
-    factors = hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
+    hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
-    if (hdi_heat_at_hand(h)) c->seconds -= factors;
-    else c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
+    c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
 }
 
 /* Adds a factor to the report; flops: of those of a real one. */
@@ -18565,22 +18518,18 @@ static double hdi_krylov_steps(double ratio, int goes_on) {
 /* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
  * times might overflow. */
 static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
-    const double factor = f.flops / HDI_RATE_REAL;
-    const double step = (16 * f.nnz + 100 * (double)h->heat->source->n_active) / HDI_RATE_BYTES;
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
     const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
     double best = HUGE_VAL;
-    hdi_windows all = {1, 0, 0};
-    int32_t w;
-    for (w = least; w < 2 * least + 15; w++) {
-        const double ratio = exp(span / w);
-        const double longest = hdi_krylov_steps(ratio, 0) + (w > 1 ? HDI_STEPS_HANDED_ON : 0);
-        const double steps = longest + (w - 1) * hdi_krylov_steps(ratio, 1);
-        if (w * factor + steps * step >= best) continue;
-        best = w * factor + steps * step;
-        all.n = w;
-        all.steps = steps;
-        all.longest = longest;
+    hdi_windows all = {1, 0, 0}, one;
+    for (one.n = least; one.n < 2 * least + 15; one.n++) {
+        hd_cost c = {0, 0, 0, 0, 0, 0};
+        one.longest = hdi_krylov_steps(exp(span / one.n), 0) + (one.n > 1 ? HDI_STEPS_HANDED_ON : 0);
+        one.steps = one.longest + (one.n - 1) * hdi_krylov_steps(exp(span / one.n), 1);
+        hdi_fill_cost(f, 1, one.n, one.steps, 0, &c);
+        if (c.seconds >= best) continue;
+        best = c.seconds;
+        all = one;
     }
     return all;
 }
@@ -18608,21 +18557,19 @@ static void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const int ready = h->n_times == 1 && m->shifted.ready &&
         m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const double n = heat->source->n_active, steps = h->ask.k * w.steps;
+    const double steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
     (void)least;
     if (heat->poles_asked || hdi_factors_unasked(heat)) return;
     c->possible = 1;
-    c->flops = (w.n - ready) * f.flops + steps * 4 * f.nnz;
-    c->seconds = f.analysis + (w.n - ready) * f.flops / HDI_RATE_REAL +
-                 steps * (16 * f.nnz + 100 * n) / (HDI_RATE_BYTES * (wide > 1 ? HDI_SHARED : 1)) +
-                 h->n_times * steps / w.n * 8 * n / HDI_RATE_BYTES;
+    hdi_fill_cost(f, 1, w.n - ready, steps, wide > 1, c);
+    c->seconds += f.analysis + h->n_times * steps / w.n * 8 * f.n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
-    if (!m->shifted.ctx) c->bytes = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1) : 8 * f.real_stored;
-    c->bytes += (double)sizeof(hdi_krylov) + 8 * n * (wide * (longest + 11) + 10);
-    if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * n;   /* sums at several times */
+    c->bytes = (double)sizeof(hdi_krylov) + 8 * f.n * (wide * (longest + 11) + 10);
+    if (!m->shifted.ctx) c->bytes += 8 * f.stored;
+    if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * f.n;   /* sums at several times */
 }
 
 /* The steps of a basis for n items and the times [q0, q1). */
@@ -19422,7 +19369,7 @@ static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
     c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
-    c->bytes = 8 * f.real_stored + (8 * steps + 400) * n;
+    c->bytes = 8 * f.stored + (8 * steps + 400) * n;
     c->seconds = h->ask.k * (f.analysis + HDI_LOCAL_MAKE * n + f.flops / HDI_RATE_REAL +
                              steps * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES);
 }
@@ -19714,12 +19661,13 @@ static int32_t hdi_modes_count(const hd_heat *heat, double more) {
 #define HDI_MODES_SURE 0.5       /* at least this part is needed: 0.67 was seen on a dozen vertices */
 
 static double hdi_modes_need(const hd_heat *heat, int32_t count) {
-    const int32_t n = heat->source->n_active;
     const hdi_elim *m = &heat->elim;
-    const double factor = m->ctx ? (double)hdi_factor_bytes(&m->sym, 1)
-                          : 8 * hdi_heat_fill(heat, m).real_stored;
-    return hdi_spec_need(n, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0) + factor +
-           2.0 * sizeof(double) * heat->source->n;
+    const double n = heat->source->n_active;
+    hdi_spec s;
+    memset(&s, 0, sizeof s);
+    hdi_spec_take(&s, heat->source->n_active, count, m->ctx ? hdi_sweep_size(&m->sym, 1, HDI_WIDE) : 0);
+    return (double)(s.keep.bytes + s.runs.bytes) + 16 * n * ((double)count + (double)HDI_SPEC_GAPS) +
+           8 * hdi_heat_fill(heat, m).stored + 16.0 * heat->source->n;
 }
 
 /* Finds `count` eigenpairs. Returns 0 if that fails, if they are not proven complete, or if there is no room:
@@ -22742,45 +22690,36 @@ static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources 
  * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by {
-    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
-} hdi_by;
+typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
 
-/* What a query is. */
 typedef struct hdi_query_row {
     hd_query query;
-    hdi_by by;                   /* nothing: there is no such query */
-    int32_t columns;             /* k counts columns that are solved for */
+    hdi_by by;
+    int32_t columns;             /* k counts columns that are solved for, or pairs that are found */
     int32_t mass;                /* K_t is asked for, not k_t */
     const hdi_distance_row *distance;   /* its kind, or NULL */
 } hdi_query_row;
 
-static const hdi_query_row hdi_other_queries[] = {
+static const hdi_query_row hdi_query_rows[] = {
     {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
     {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
     {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
     {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
     {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
     {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
+    {HD_QUERY_DISTANCE, HDI_BY_INVERSION, 1, 0, hdi_distance_rows},
+    {HD_QUERY_DISTANCE_WEIGHTED, HDI_BY_INVERSION, 1, 0, hdi_distance_rows + 1},
+    {HD_QUERY_DISTANCE_COMMUTE, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 2},
+    {HD_QUERY_DISTANCE_BIHARMONIC, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 3},
     {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
 };
 
-static hdi_query_row hdi_query_of(hd_query query) {
-    hdi_query_row row = {query, HDI_BY_NOTHING, 1, 0, NULL};
+/* NULL: there is no such query. */
+static const hdi_query_row *hdi_query_of(hd_query query) {
     size_t q;
-    for (q = 0; q < sizeof hdi_other_queries / sizeof *hdi_other_queries; q++)
-        if (hdi_other_queries[q].query == query) return hdi_other_queries[q];
-    for (q = 0; q < HDI_DISTANCES; q++) {
-        if (hdi_distance_rows[q].query != query) continue;
-        row.distance = hdi_distance_rows + q;
-        row.by = row.distance->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
-    }
-    return row;
-}
-
-/* Has the query times? */
-static int hdi_query_timed(const hdi_query_row *query) {
-    return query->by == HDI_BY_SOLVES || query->by == HDI_BY_INVERSION;
+    for (q = 0; q < sizeof hdi_query_rows / sizeof *hdi_query_rows; q++)
+        if (hdi_query_rows[q].query == query) return hdi_query_rows + q;
+    return NULL;
 }
 
 /* A query under estimation. */
@@ -22788,9 +22727,8 @@ typedef struct hdi_estimate {
     hdi_heat_call *h;
     const hdi_query_row *query;
     hd_estimate *to;
-    int32_t k;
     double unit;                 /* the call's times are the caller's times this */
-    double held;                 /* bytes of arrays that the query takes first */
+    double held;                 /* bytes of arrays that the query takes first, and of small ones */
     hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
 
@@ -22807,109 +22745,106 @@ static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
     return h->e->status;
 }
 
+/* Solves, or an inversion for `count` times that share a set, with what is made of it. */
+static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int32_t count, hd_cost *c) {
+    const hd_laplacian *lap = x->h->heat->source;
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t k = x->h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
+    const int forms = kind && kind->mass > 0 && lap->B;
+    const double n = lap->n_active, entries = (double)(lap->L.nnz + lap->n_active) / 2;
+    double doubles = 6 * n + count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
+    if (x->query->by == HDI_BY_SOLVES) {
+        hdi_direct_set(x->h, set, HDI_AFTER_BOUND, 0, k, x->held, c);
+        return;
+    }
+    /* the values, and a diagonal */
+    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n);
+    if (kind)                                    /* a metric, and columns of its bound or at all times */
+        doubles += 12 * n + 3.0 * lap->n + 6.0 * k + (count > 1 ? 2.0 * count : hdi_min(k, HDI_LANES)) * n;
+    hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
+}
+
+/* Bytes where the highest degree takes over; of inversions and distances after a try whose lanes and real
+ * factor stay. */
+static double hdi_estimate_most(const hdi_estimate *x) {
+    const hdi_heat_call *h = x->h;
+    const hdi_elim *m = &h->heat->elim;
+    hd_cost c;
+    hd_rational set;
+    memset(&c, 0, sizeof c);
+    if (hdi_heat_set_of(h, HDI_RAT_KERNEL_MAX, &set) < 0) return 0;
+    hdi_estimate_set(x, &set, 1, &c);
+    if (!m->ctx || (x->query->by == HDI_BY_SOLVES && !x->query->distance)) return c.bytes;
+    return c.bytes + (double)hdi_batches_need(h->heat, 1, hdi_high32(h->ask.k, HDI_PROBES)) +
+           (m->real.ctx ? 0 : (double)hdi_factor_bytes(&m->sym, 1));
+}
+
 /* Fields, columns and entries: all methods, of which the run picks one. */
 static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
-    hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times;
-    const double *times = h->times;
-    hd_cost *by = x->to->cost, *direct = by + HD_METHOD_DIRECT, most;
-    hd_rational set;
+    hd_cost *by = x->to->cost;
     int32_t q;
-    if (hdi_heat_pick(h) >= 0 && n_times > 1 && h->method < HD_METHOD_KRYLOV) {   /* one by one */
-        h->times = &h->t;                        /* the last */
-        h->n_times = 1;
-        (void)hdi_heat_pick(h);
-        h->n_times = n_times;
-        h->times = times;
-    }
-    if (hdi_over_limit(heat->ctx, h->e)) hdi_error_clear(h->e);
+    if (hdi_heat_pick(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     if (h->e->status < 0 || (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL &&
                              hdi_estimate_analyse(h) < 0)) return h->e->status;
     x->to->method = h->method;
     x->to->reason = h->rep->reason;
     hdi_heat_costs(h, by);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++) {
-        if (by[q].possible) by[q].bytes += x->held + HDI_ESTIMATE_SMALL;
+        if (by[q].possible) by[q].bytes += x->held;
         by[q].bytes_most = by[q].bytes;
     }
-    if (!direct->possible || hdi_heat_set_of(h, HDI_RAT_UNIFORM_MAX, &set) < 0) return h->e->status;
-    memset(&most, 0, sizeof most);
-    (void)hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, x->k, x->held + HDI_ESTIMATE_SMALL, &most);
-    if (x->query->distance && !heat->poles_asked && heat->elim.ctx)   /* the arrays of the first try stay */
-        most.bytes += (double)hdi_batches_need(heat, hdi_set_packs(&set), x->k);
-    direct->bytes_most = hdi_max(direct->bytes, most.bytes);
+    if (by[HD_METHOD_DIRECT].possible)
+        by[HD_METHOD_DIRECT].bytes_most = hdi_max(by[HD_METHOD_DIRECT].bytes, hdi_estimate_most(x));
     return h->e->status;
-}
-
-/* An inversion for `count` times of a query that share a set, with what is made of it. */
-static void hdi_estimate_inversion(const hdi_estimate *x, const hd_rational *set, int32_t count,
-                                   hd_cost *c) {
-    const hd_laplacian *lap = x->h->heat->source;
-    const int distance = x->query->distance != NULL;
-    const int forms = distance && x->query->distance->mass > 0 && lap->B;
-    const double n = lap->n_active, entries = (double)((lap->L.nnz - lap->n_active) / 2) + n;
-    const int32_t sums = 2 * hdi_low32(count, set->n_poles);
-    /* the values, and a diagonal */
-    double doubles = (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n) + 6 * n;
-    if (distance)                                /* a metric, and columns of its bound or at all times */
-        doubles += 12 * n + 3.0 * lap->n + 6.0 * x->k +
-                   (count > 1 ? 2.0 * count : hdi_min(x->k, HDI_LANES)) * n;
-    doubles += count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
-    (void)hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, distance ? x->k : 0,
-                         x->held + 8 * doubles + HDI_ESTIMATE_SMALL, c);
 }
 
 /* The times of the call by poles that they share, in windows. Returns 0 if they share none. */
 static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    const int distance = x->query->distance != NULL;
-    const double tol = distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
-    int32_t windows = 0, w, q0, q1;
-    if (h->n_times > 1 && hdi_degree_open(h->heat) &&
-        !(x->query->mass == 1 && h->heat->source->B))
-        windows = hdi_shared_windows(h->times, h->n_times, tol);
+    const double tol = x->query->distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
+    const int can = h->n_times > 1 && hdi_degree_open(h->heat) &&
+                    !(x->query->mass == 1 && h->heat->source->B);
+    const int32_t windows = can ? hdi_shared_windows(h->times, h->n_times, tol) : 0;
+    int32_t w, q0, q1;
     for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
         hd_rational set;
         memset(&set, 0, sizeof set);
         q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
         (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol);
-        hdi_estimate_inversion(x, &set, q1 - q0, c);
+        hdi_estimate_set(x, &set, q1 - q0, c);
     }
     return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
 }
 
-/* Diagonals, traces and distances by poles: all times together if the run does so, else one by one, each as
- * the last time. Bytes are enough for both, since the run may fall back to the latter. In bytes_most the
- * highest degree takes over. */
-static void hdi_estimate_inverses(const hdi_estimate *x, hd_cost *c) {
+/* Diagonals, traces and distances by poles: the first `early` times together if the run does so, else all one
+ * by one, each as the last time. Bytes are enough for both, since the run may fall back to the latter. */
+static void hdi_estimate_inverses(const hdi_estimate *x, int32_t early, hd_cost *c) {
     hdi_heat_call *h = x->h;
-    const hd_heat *heat = h->heat;
-    const int sure = x->query->distance && hdi_degree_open(heat) &&
-                     hdi_distance_sure(heat, x->query->distance, h->t / x->unit);
-    hd_cost by[2];
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t n_times = h->n_times;
+    double most;
+    hd_cost one;
     hd_rational set;
-    int32_t i, one;
-    memset(by, 0, sizeof by);
+    memset(&one, 0, sizeof one);
     h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
-    for (i = 0; i < 2; i++) {
-        h->degree = i == 1 && !heat->poles_asked ? HDI_RAT_KERNEL_MAX : 0;
-        if (hdi_heat_set(h, &set) >= 0) hdi_estimate_inversion(x, &set, 1, by + i);
-    }
+    most = hdi_estimate_most(x);
+    if (kind && hdi_degree_open(h->heat) && hdi_distance_sure(h->heat, kind, h->t / x->unit) &&
+        most <= hdi_bytes_left(h->heat->ctx)) h->degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, &one);
     h->degree = 0;
-    one = sure && by[1].bytes <= hdi_bytes_left(heat->ctx);
-    if (heat->elim.ctx)                          /* after a first try, whose lanes and real factor stay */
-        by[1].bytes += (double)(hdi_batches_need(heat, 1, hdi_high32(x->k, HDI_PROBES)) +
-                                (heat->elim.real.ctx ? 0 : hdi_factor_bytes(&heat->elim.sym, 1)));
+    if (early > 0) h->n_times = early;
     if (!hdi_estimate_shared(x, c)) {
-        memset(c, 0, sizeof *c);
-        c->flops = h->n_times * by[one].flops;
-        c->seconds = h->n_times * by[one].seconds;
+        *c = one;
+        h->n_times = 1;
     }
+    c->flops *= (double)n_times / h->n_times;
+    c->seconds *= (double)n_times / h->n_times;
+    h->n_times = n_times;
     c->possible = 1;
-    c->bytes = hdi_max(c->bytes, by[one].bytes);
-    c->bytes_most = hdi_max(c->bytes, by[1].bytes);
+    c->bytes = hdi_max(c->bytes, one.bytes);
+    c->bytes_most = hdi_max(c->bytes, most);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
 
@@ -22918,17 +22853,15 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
     hd_heat *heat = x->h->heat;
     const int forms = x->query->distance->power > 1;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double n = heat->source->n_active, columns = (double)x->k + (double)HDI_PROBES;
-    const double factor = (forms ? 17 : 1) * f.flops, solves = columns * (forms ? 4 : 2);
+    const double k = x->h->ask.k;
     c->possible = 1;
-    c->flops = factor * (1 + HDI_INVERT_FLOPS) + solves * 4 * f.nnz;
-    c->seconds = factor / HDI_RATE_REAL * (1 + HDI_INVERT_SECONDS) +
-                 solves * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES;
-    c->bytes = 8 * f.real_stored * (forms ? 9 : 1);
+    hdi_fill_cost(f, 1, 1 + HDI_INVERT, (k + (double)HDI_PROBES) * (forms ? 4 : 2), 0, c);
+    hdi_fill_cost(f, HDI_PACK, forms ? 1 + HDI_INVERT : 0, 0, 0, c);
+    c->bytes = 8 * f.stored * (forms ? 9 : 1);
     if (heat->elim.ctx)
         c->bytes = (double)hdi_ground_need(&heat->elim, &heat->ground, forms) +
                    16 * (double)hdi_ground_room(&heat->elim);
-    c->bytes += 40 * n + 16.0 * heat->source->n + 48.0 * x->k + HDI_ESTIMATE_SMALL;
+    c->bytes += 40 * f.n + 16.0 * heat->source->n + 48 * k + x->held;
     c->bytes_most = c->bytes;
 }
 
@@ -22944,19 +22877,14 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 #define HDI_MODES_OVER 1.25
 
 /* The cost of finding `count` of them. */
-static hd_cost hdi_estimate_pairs(const hd_heat *heat, int32_t count) {
+static void hdi_estimate_pairs(const hd_heat *heat, int32_t count, hd_cost *c) {
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double n = heat->source->n_active, runs = 2 + ceil(count / (double)HDI_SPEC_HALF);
-    const double solves = 2.5 * count + (double)HDI_SPEC_HALF;
-    hd_cost c;
-    memset(&c, 0, sizeof c);
-    c.possible = 1;
-    c.flops = runs * f.flops + solves * (4 * f.nnz + 8 * n * count);
-    c.seconds = runs * f.flops / HDI_RATE_REAL +
-                HDI_MODES_SECONDS * n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
-    c.bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-    c.bytes_most = HDI_MODES_OVER * hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
-    return c;
+    c->possible = 1;
+    hdi_fill_cost(f, 1, 2 + ceil(count / (double)HDI_SPEC_HALF), 0, 0, c);
+    c->flops += (2.5 * count + (double)HDI_SPEC_HALF) * (4 * f.nnz + 8 * f.n * count);
+    c->seconds += HDI_MODES_SECONDS * f.n * (count + HDI_MODES_BEGIN) * (1 + 2.0 * count / HDI_MODES_MOST);
+    c->bytes = hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL;
+    c->bytes_most = HDI_MODES_OVER * c->bytes;
 }
 
 /* How many are asked for at time q of the call. */
@@ -22965,56 +22893,43 @@ static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
     return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
 }
 
-/* Adds the bytes of eigenpairs, which may come before or after poles at any time: while they are found, and
- * then beside poles. */
-static void hdi_estimate_help(const hdi_estimate *x, hd_cost *c) {
-    const hdi_heat_call *h = x->h;
-    const hd_laplacian *lap = h->heat->source;
-    const int twice = x->query->distance && x->query->distance->mass > 0 && lap->B;
-    const double bytes = c->bytes, most = c->bytes_most;
-    int32_t q;
-    for (q = 0; q < h->n_times; q++) {
-        const int32_t count = hdi_estimate_count(x, q);
-        const double held = 8.0 * lap->n * ((twice ? 2.0 : 1.0) * count + 5);
-        const hd_cost pairs = hdi_estimate_pairs(h->heat, count);
-        if (!hdi_task_near(&x->task, h->times[q] / x->unit, HDI_MODES_MOST)) continue;
-        c->bytes_most = hdi_max(c->bytes_most, hdi_max(most + held, pairs.bytes_most));
-        if (q == 0 || !hdi_task_first(&x->task, h->times[q] / x->unit)) continue;
-        c->bytes = hdi_max(c->bytes, hdi_max(bytes + held, pairs.bytes));
-    }
+/* The most that eigenpairs for time q take while they are found, times over, and then beside other bytes. */
+static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over, double bytes) {
+    const hd_heat *heat = x->h->heat;
+    const hdi_distance_row *kind = x->query->distance;
+    const int32_t count = hdi_estimate_count(x, q);
+    const double vectors = (kind && kind->mass > 0 && heat->source->B ? 2.0 : 1.0) * count + 5;
+    return hdi_max(bytes + 8 * vectors * heat->source->n,
+                   over * (hdi_modes_need(heat, count) + HDI_ESTIMATE_SMALL));
 }
 
 /* ---- estimates of queries ---- */
 
-/* A query at times, by poles or by what the run picks. Where few eigenpairs serve they take about as long as
- * poles, once; then poles do the other times, or all if there is no room for pairs. */
+/* A query at times, by poles or by what the run picks. Where few eigenpairs serve, from time `few` on, they
+ * take about as long as poles, once; then poles do the other times, or all if there is no room for pairs.
+ * From time `some` on they may help. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     const hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times;
-    hd_cost *c = x->to->cost + HD_METHOD_DIRECT, fewer;
-    int32_t early = n_times, count;
-    while (early > 0 && hdi_task_first(&x->task, h->times[early - 1] / x->unit)) early--;
-    if ((x->query->by == HDI_BY_INVERSION || early == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
-    if (x->query->by == HDI_BY_SOLVES) (void)hdi_estimate_solves(x);
-    else hdi_estimate_inverses(x, c);
-    if (x->query->by == HDI_BY_INVERSION && early > 0 && early < n_times) {
-        h->n_times = early;
-        hdi_estimate_inverses(x, &fewer);
-        h->n_times = n_times;
-        c->bytes = hdi_max(c->bytes, fewer.bytes);
-        c->bytes_most = hdi_max(c->bytes_most, fewer.bytes_most);
-    }
-    count = hdi_estimate_count(x, early == 0 ? 0 : n_times - 1);
-    if (early == 0 && hdi_modes_need(heat, count) <= hdi_bytes_left(heat->ctx)) {
+    const int32_t n_times = h->n_times, inverses = x->query->by == HDI_BY_INVERSION;
+    hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
+    int32_t some = 0, few = n_times;
+    while (few > 0 && hdi_task_first(&x->task, h->times[few - 1] / x->unit)) few--;
+    while (some < few && !hdi_task_near(&x->task, h->times[some] / x->unit, HDI_MODES_MOST)) some++;
+    if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
+    if (inverses) hdi_estimate_inverses(x, few, c);
+    else (void)hdi_estimate_solves(x);
+    if (few == 0 && hdi_modes_need(heat, hdi_estimate_count(x, 0)) <= hdi_bytes_left(heat->ctx)) {
         x->to->method = HD_METHOD_DIRECT;
         x->to->reason = HDI_MODES_REASON;
-        if (count <= heat->modes.s.count) {      /* they are there */
-            c->flops = 6.0 * heat->source->n * count * (x->k + 1);
+        if (hdi_estimate_count(x, 0) <= heat->modes.s.count) {   /* they are there */
+            c->flops = 6.0 * heat->source->n * hdi_estimate_count(x, 0) * (h->ask.k + 1);
             c->seconds = 1.5e-9 * c->flops;
         }
     }
-    hdi_estimate_help(x, x->to->cost + x->to->method);
+    c = x->to->cost + x->to->method;
+    if (few > 0 && few < n_times) c->bytes = hdi_estimate_beside(x, few, 1, c->bytes);
+    if (some < n_times) c->bytes_most = hdi_estimate_beside(x, some, HDI_MODES_OVER, c->bytes_most);
     return h->e->status;
 }
 
@@ -23025,37 +22940,35 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     const int pairs = query->query == HD_QUERY_PAIRS;
     const int32_t times = query->distance && !pairs ? query->distance->time : 1;
     const double n = heat->source->n;
-    hd_cost *direct = to->cost + HD_METHOD_DIRECT;
+    hd_cost *c = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
     memset(&x, 0, sizeof x);
     x.h = h;
     x.query = query;
     x.to = to;
-    x.k = h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
+    x.held = HDI_ESTIMATE_SMALL;
+    h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
     to->method = h->method = HD_METHOD_DIRECT;
     to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (!hdi_query_timed(query)) {
+    if (query->by >= HDI_BY_GROUND) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
-        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, direct);
-        else *direct = hdi_estimate_pairs(heat, hdi_low32(x.k, heat->source->n_active));
+        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, c);
+        else hdi_estimate_pairs(heat, hdi_low32(h->ask.k, heat->source->n_active), c);
         return HD_OK;
     }
     x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : x.k);
+    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : h->ask.k);
     else hdi_fading_task(&x.task, h);
-    if (hdi_heat_sort_times(h, x.unit / heat->scale, NULL) < 0) return h->e->status;
+    if (hdi_heat_sort_times(h, times, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
-    h->t = h->times[h->n_times - 1];
-    if (h->t == 0 && query->by == HDI_BY_SOLVES) {
-        to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
-        to->reason = "t = 0";
-        to->cost[to->method].possible = 1;
-        to->cost[to->method].bytes = to->cost[to->method].bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
-        return HD_OK;
-    }
-    if (pairs)
-        x.held = 8 * hdi_min(n * x.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * x.k + 20 * n;
-    return hdi_estimate_times(&x);
+    if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
+    if (h->t > 0 || query->by != HDI_BY_SOLVES) return hdi_estimate_times(&x);
+    to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
+    to->reason = "t = 0";
+    c = to->cost + to->method;
+    c->possible = 1;
+    c->bytes = c->bytes_most = 64 * n + HDI_ESTIMATE_SMALL;
+    return HD_OK;
 }
 
 /* What is known when the call's own arrays are gone. */
@@ -23069,13 +22982,16 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
 }
 
-static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t k) {
-    if (query->by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+/* Checks the query, and its times if it has some. */
+static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t n_times,
+                                    const double *t, int32_t k) {
+    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
     if (k < 0)
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
         return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    return query->by == HDI_BY_SOLVES ? HD_OK : hdi_direct_only(h);
+    if (query->by != HDI_BY_SOLVES && hdi_direct_only(h) < 0) return h->e->status;
+    return query->by == HDI_BY_GROUND ? HD_OK : hdi_times_check(h, n_times, t, query->by != HDI_BY_SOLVES);
 }
 
 /* ==== [29] geodesic ====
@@ -23344,9 +23260,9 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active);
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     /* the last factor, and what is kept of those before */
-    uint64_t need = hdi_factor_bytes(&g->sym, 1);
+    const uint64_t need = hdi_factor_bytes(&g->sym, 1) +
+                          (mean ? 16 : 8) * (uint64_t)g->sym.panel[g->sym.n_super];
     int32_t c;
-    hdi_scope_count(&need, (uint64_t)g->sym.panel[g->sym.n_super], (mean ? 2 : 1) * sizeof(double));
     if (e->status < 0 || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
     hdi_geo_matrix(g, lap, 1, mean ? NULL : g->held, val);
     if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
@@ -24762,16 +24678,14 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row row = hdi_query_of(query);
+    const hdi_query_row *row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, &row, k) >= 0 && hdi_query_timed(&row))
-        (void)hdi_times_check(&h, n_times, t, row.by == HDI_BY_INVERSION);
-    if (h.e->status >= 0) (void)hdi_estimate_run(&h, &row, k, &found);
+    else if (hdi_estimate_check(&h, row, n_times, t, k) >= 0) (void)hdi_estimate_run(&h, row, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
