@@ -15176,35 +15176,30 @@ static hd_status hdi_source_check_point(const hd_sources *s, int64_t q, int last
         return hdi_source_fail(e, HD_ERR_NOT_FINITE, "source: the weight of a point is not finite", q, -1,
                                s->weight[q]);
     if (s->curve && s->length && !last && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
-        return hdi_source_fail(e, hdi_finite(s->length[q]) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
-                               "source: the length of a piece is negative or not finite", q, -1,
-                               s->length[q]);
-    return HD_OK;
-}
-
-/* Checks the points from one to before another, a source. */
-static hd_status hdi_source_check(const hd_sources *s, int64_t begin, int64_t end, int32_t n, hd_error *e) {
-    if (begin < 0 || end <= begin) return hdi_fail(e, HD_ERR_ARGUMENT, "source: it has no point");
-    if (s->curve && end - begin < 2)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
-    if (end - begin > INT32_MAX / hdi_source_corners(s))
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
-    for (; begin < end; begin++)
-        if (hdi_source_check_point(s, begin, begin + 1 == end, n, e) < 0) return e->status;
+        return hdi_source_fail(e, HD_ERR_ARGUMENT, "source: the length of a piece is negative or not finite",
+                               q, -1, s->length[q]);
     return HD_OK;
 }
 
 /* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
 static hd_status hdi_sources_check(const hd_sources *s, int32_t n, hd_error *e) {
+    int64_t q;
     int32_t k;
     hdi_refuse(s->begin_zero || s->end_zero, "sources: not cleared before use", e);
     hdi_refuse(s->count < 0 || s->corners < 0, "sources: a number is negative", e);
     hdi_refuse(s->curve && s->weight, "source: points of a curve have no weights", e);
     if (e->status < 0) return e->status;
     if (s->count > 0 && !s->vertex) return hdi_missing(e);
-    for (k = 0; k < s->count; k++)
-        if (hdi_source_check(s, hdi_source_first(s, k), hdi_source_first(s, k + 1), n, e) < 0)
-            return hdi_source_place(s, k, e);
+    for (k = 0; k < s->count; k++) {
+        const int64_t begin = hdi_source_first(s, k), end = hdi_source_first(s, k + 1);
+        hdi_refuse(begin < 0 || end <= begin, "source: it has no point", e);
+        hdi_refuse(s->curve && end - begin < 2, "source: a curve has at least two points", e);
+        if (e->status >= 0 && end - begin > INT32_MAX / hdi_source_corners(s))
+            hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
+        for (q = begin; q < end && e->status >= 0; q++)
+            (void)hdi_source_check_point(s, q, q + 1 == end, n, e);
+        if (e->status < 0) return hdi_source_place(s, k, e);
+    }
     return HD_OK;
 }
 
@@ -15226,18 +15221,6 @@ static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacia
         for (i = 0; i < 3 && b > 0; i++) d[i] += (c < corners ? -b : b) * lap->xyz[hdi_triple(row) + i];
     }
     return hdi_norm3(d);
-}
-
-/* Divides weights by their sum, which size is the size of. */
-static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_error *e) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < n; q++) sum += weight[q];
-    if (!(sum > (double)n * DBL_EPSILON * size))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1,
-                            sum);
-    for (q = 0; q < n; q++) weight[q] /= sum;
-    return HD_OK;
 }
 
 /* Sums parts [n] of the same vertex of v, and leaves out zeros. */
@@ -15290,7 +15273,8 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     hd_error *e = in->e;
     hdi_scope work = hdi_scope_begin(in->ctx, e);
     hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
-    double *part = HDI_TAKE(&work, double, all), size;
+    double *part = HDI_TAKE(&work, double, all), size, sum = 0;
+    int32_t q;
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
@@ -15299,28 +15283,28 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
     to->vertex = vertex;
     to->weight = weight;
-    if (normal && e->status >= 0) (void)hdi_terms_normalise(weight, to->n, size, e);
+    for (q = 0; q < to->n; q++) sum += weight[q];
+    if (normal && e->status >= 0 && !(sum > (double)to->n * DBL_EPSILON * size))
+        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
+    for (q = 0; q < to->n && normal; q++) weight[q] /= sum;
     if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
     return hdi_scope_end(&work);
 }
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
-    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k, *vertex = NULL;
-    double *weight = NULL;
+    int64_t size;
+    int32_t k, *vertex;
+    double *weight;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    if (!plain) {
-        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
-        vertex = HDI_TAKE(keep, int32_t, size);
-        weight = HDI_TAKE(keep, double, size);
-    }
+    size = hdi_source_first(s, s->count) * hdi_source_corners(s);
+    vertex = HDI_TAKE(keep, int32_t, size);
+    weight = HDI_TAKE(keep, double, size);
     for (k = 0; k < s->count && e->status >= 0; k++) {
         const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
-        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
@@ -15402,26 +15386,16 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
     }
 }
 
-/* x = G x. Rows held are zero in both. work: a sweep's. */
-static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, double *work) {
-    hdi_sweep z;
-    int32_t i;
-    for (i = 0; i < m->sym.n; i++)
-        if (g->held[i]) x[i] = 0;
-    z = hdi_sweep_open(&g->factor, 1, x, work);
-    hdi_sweep_run(&z, m->ctx);
-}
-
 /* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
  * neighbours have nearly the same value, so that little is lost. As an approximation of G b, x is off at v by
  * at most sqrt(G_vv) times off of v's component: |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
- * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components], or NULL. */
+ * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components]. */
 static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
                                 const double *extra, double *r, double *off) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     int64_t p;
-    if (off) memset(off, 0, (size_t)lap->n_components * sizeof *off);
+    memset(off, 0, (size_t)lap->n_components * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
@@ -15436,22 +15410,25 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
         if (g->held[i]) r[i] = 0;
         else if (!conserves) r[i] -= rest * x[i];
         size += conserves ? 0 : fabs(rest * x[i]);
-        if (!g->held[i] && off)
+        if (!g->held[i])
             off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
                 sqrt(hdi_max(0, g->diag[i]));
     }
 }
 
-/* x = G b, with one step of iterative refinement; off as above. r [n], sweep: work. */
+/* x = G b, with one step of iterative refinement; off as above. b is zero on the rows held. r [n], sweep:
+ * work. */
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
-    int32_t i;
-    memcpy(x, b, (size_t)m->sym.n * sizeof *x);
-    hdi_ground_solve(m, g, x, sweep);
-    hdi_ground_residual(m, g, b, x, NULL, r, NULL);
-    hdi_ground_solve(m, g, r, sweep);
-    for (i = 0; i < m->sym.n; i++) x[i] += r[i];
-    hdi_ground_residual(m, g, b, x, extra, r, off);
+    int32_t i, pass;
+    memset(x, 0, (size_t)m->sym.n * sizeof *x);
+    memcpy(r, b, (size_t)m->sym.n * sizeof *r);
+    for (pass = 0; pass < 2; pass++) {
+        hdi_sweep z = hdi_sweep_open(&g->factor, 1, r, sweep);
+        hdi_sweep_run(&z, m->ctx);
+        for (i = 0; i < m->sym.n; i++) x[i] += r[i];
+        hdi_ground_residual(m, g, b, x, extra, r, off);
+    }
 }
 
 /* Doubles of a ground's arrays, which begin with diag. */
