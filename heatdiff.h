@@ -14403,8 +14403,16 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
-/* A look at the bound after m steps costs as much as some steps on small meshes: so they become rare. */
-#define HDI_LANCZOS_LOOKS 24
+/* Steps to the next look at the bound: half of what a straight line through the logarithms of the last two
+ * promises, because convergence speeds up. */
+static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
+                                double target) {
+    const int32_t most = m < 64 ? 1 : m / 32;
+    double want;
+    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
+    want = 0.5 * log(bound / target) / log(bound_before / bound) * (m - m_before);
+    return want < 1 ? 1 : want > most ? most : (int32_t)want;
+}
 
 /* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2: the part of
  * |u|_B^2 that is in the constants. */
@@ -14414,8 +14422,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     const double t = task->t, tol = task->tol;
     hdi_lanczos *z = &lane->lanczos;
     const int32_t most = hdi_low32(task->max_iterations, z->room);
-    double bound = 0, best = DBL_MAX, start = 0;
-    int32_t look = 1, best_m = 0;
+    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
+    int32_t look = 1, looked = 0, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
     if (task->rate) hdi_rational_rate(&set);
@@ -14445,7 +14453,10 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         if (start == 0) start = lane->off.solver;
         if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(start, lane->off.solver, tol * lane->u_norm),
                            e) < 0) return e->status;
-        look = z->m + 1 + z->m / HDI_LANCZOS_LOOKS;
+        look = z->m +
+               hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
+        looked = z->m;
+        bound_before = bound;
     }
 }
 
@@ -15293,18 +15304,21 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
+    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int64_t size;
-    int32_t k, *vertex;
-    double *weight;
+    int32_t k, *vertex = NULL;
+    double *weight = NULL;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    size = hdi_source_first(s, s->count) * hdi_source_corners(s);
-    vertex = HDI_TAKE(keep, int32_t, size);
-    weight = HDI_TAKE(keep, double, size);
+    if (!plain) {
+        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
+        vertex = HDI_TAKE(keep, int32_t, size);
+        weight = HDI_TAKE(keep, double, size);
+    }
     for (k = 0; k < s->count && e->status >= 0; k++) {
         const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
+        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
