@@ -12832,7 +12832,7 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
  * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger and
  * hdi_heat_note say how each is known; and a lane has them in the norm of B from its engine. With poles
- * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_bound
+ * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_most
  * (solver), hdi_rim_bound (local) and hdi_krylov_rounding, from the residuals that hdi_krylov_probe measures;
  * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by. */
 
@@ -14189,31 +14189,38 @@ static hd_status hdi_lanczos_failed(hd_error *e) {
     return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
 }
 
-/* e_m' exp(-s T) e_1 from the ends of T's eigenvectors. */
-static double hdi_lanczos_last(const hdi_lanczos *z, double s) {
-    double sum = 0;
+/* Eigenvalues d of T and its eigenvectors v [m][rows]: all rows, or the first and the last. beta[j] is
+ * between j - 1 and j; both come stride apart. off [m]: work. */
+static int hdi_lanczos_eigen(const double *alpha, const double *beta, int32_t stride, int32_t m, int32_t rows,
+                             double *d, double *off, double *v) {
     int32_t i;
-    for (i = 0; i < z->m; i++) sum += z->ends[2 * i] * z->ends[2 * i + 1] * exp(-s * hdi_max(0, z->d[i]));
-    return fabs(sum);
+    memset(v, 0, (size_t)m * (size_t)rows * sizeof *v);
+    for (i = 0; i < m; i++) {
+        d[i] = alpha[(int64_t)i * stride];
+        off[i] = i + 1 < m ? beta[(int64_t)(i + 1) * stride] : 0;
+    }
+    for (i = 0; i < rows; i++) v[(int64_t)(i < rows - 1 ? i : m - 1) * rows + i] = 1;
+    return hdi_tridiag_eigen(d, off, v, m, rows);
 }
 
-/* Its integral from 0 to t. It has one sign. */
-static double hdi_lanczos_integral(const hdi_lanczos *z, double t) {
+/* e_m' exp(-s T) e_1 from the ends of T's eigenvectors, or its integral from 0 to s: it has one sign. */
+static double hdi_lanczos_last(const hdi_lanczos *z, double s, int integral) {
     double sum = 0;
     int32_t i;
     for (i = 0; i < z->m; i++) {
-        const double x = t * z->d[i];
-        sum += z->ends[2 * i] * z->ends[2 * i + 1] * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
+        const double x = s * z->d[i], both = z->ends[2 * i] * z->ends[2 * i + 1];
+        if (!integral) sum += both * exp(-hdi_max(0, x));
+        else sum += both * s * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
     }
-    return t * fabs(sum);
+    return fabs(sum);
 }
 
 /* A bound of it for s in [t/2, t]. But for a factor it is the density of a sum of exponential variables, and
  * its logarithm is concave: below the lines through that at t/4 and t/2, and at t and 2 t. */
 static double hdi_lanczos_peak(const hdi_lanczos *z, double t) {
-    const double half = hdi_lanczos_last(z, t / 2), last = hdi_lanczos_last(z, t);
-    const double rise = hdi_max(1, hdi_quotient(half, hdi_lanczos_last(z, t / 4)));
-    const double fall = hdi_max(1, hdi_quotient(last, hdi_lanczos_last(z, 2 * t)));
+    const double half = hdi_lanczos_last(z, t / 2, 0), last = hdi_lanczos_last(z, t, 0);
+    const double rise = hdi_max(1, hdi_quotient(half, hdi_lanczos_last(z, t / 4, 0)));
+    const double fall = hdi_max(1, hdi_quotient(last, hdi_lanczos_last(z, 2 * t, 0)));
     const double lines = hdi_min(hdi_bound_times(half, rise * rise), hdi_bound_times(last, sqrt(fall)));
     return hdi_max(lines, hdi_max(half, last));
 }
@@ -14230,21 +14237,15 @@ static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, int rate, double *b
     const int32_t m = z->m;
     double least = 0, most = 0;
     int32_t i;
-    for (i = 0; i < m; i++) {
-        z->d[i] = z->alpha[i];
-        z->e[i] = i + 1 < m ? z->beta[i + 1] : 0;
-        z->ends[2 * i] = i == 0;
-        z->ends[2 * i + 1] = i == m - 1;
-    }
-    if (!hdi_tridiag_eigen(z->d, z->e, z->ends, m, 2)) return hdi_lanczos_failed(e);
+    if (!hdi_lanczos_eigen(z->alpha, z->beta, 1, m, 2, z->d, z->e, z->ends)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
     }
     if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
-    *bound = z->beta[m] * (!rate ? hdi_lanczos_integral(z, t)
-                           : HDI_TWO_OVER_E * hdi_lanczos_integral(z, t / 2) +
-                             t * (2 * hdi_lanczos_peak(z, t) - hdi_lanczos_last(z, t)));
+    *bound = z->beta[m] * (!rate ? hdi_lanczos_last(z, t, 1)
+                           : HDI_TWO_OVER_E * hdi_lanczos_last(z, t / 2, 1) +
+                             t * (2 * hdi_lanczos_peak(z, t) - hdi_lanczos_last(z, t, 0)));
     return HD_OK;
 }
 
@@ -14485,6 +14486,13 @@ typedef struct hdi_rim {
     double uneven;               /* >= 1: B's diagonal, or 1 over it, is so much larger elsewhere; its root */
 } hdi_rim;
 
+/* T_m of a right-hand side: its eigenvalues, and of its eigenvectors the first and the last row, or all. */
+typedef struct hdi_ritz {
+    int32_t m, rows, rate;
+    double beta;                 /* of the step after m */
+    double *mu, *v;              /* [m] with room for v after it; [m][rows] */
+} hdi_ritz;
+
 /* The process for 1 or 8 right-hand sides side by side. All times share it. */
 typedef struct hdi_krylov {
     const hdi_elim *m;
@@ -14498,9 +14506,8 @@ typedef struct hdi_krylov {
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
-    /* of T_m of each right-hand side, when done: eigenvalues, then the eigenvectors one by one */
-    double *eigen[HDI_WIDE];
-    int32_t done[HDI_WIDE];/* steps that were enough, 0: not yet */
+    int32_t done[HDI_WIDE];      /* steps that were enough, 0: not yet, -1: there are only constants */
+    hdi_ritz ritz[HDI_WIDE];     /* of those that are done, with all rows */
     double g;
     double from;                 /* the time that the fields are answers of, with bounds on their errors */
     hdi_parts before[HDI_WIDE];
@@ -14519,7 +14526,7 @@ typedef struct hdi_krylov {
 static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     int32_t i;
     for (i = 0; i <= HDI_KRYLOV_MAX; i++) hdi_free(ctx, z->v[i]);
-    for (i = 0; i < HDI_WIDE; i++) hdi_free(ctx, z->eigen[i]);
+    for (i = 0; i < HDI_WIDE; i++) hdi_free(ctx, z->ritz[i].mu);
     hdi_free(ctx, z->c);
     hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
@@ -14575,7 +14582,7 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     memset(z->v[0], 0, (size_t)count * sizeof *z->c);
     memset(z->c, 0, (size_t)count * sizeof *z->c);
     for (r = 0; r < z->wide; r++) {
-        z->done[r] = -1;                         /* nothing there but constants */
+        z->done[r] = -1;
         z->f_norm[r] = z->whole[r] = 0;
         if (r < z->k) hdi_krylov_take(z, r, lane + r);
     }
@@ -14657,19 +14664,7 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     return HD_OK;
 }
 
-/* Eigenvalues d of T_m of right-hand side r, and its eigenvectors v [m][rows]: all rows, or the first and the
- * last. */
-static int hdi_krylov_eigen(const hdi_krylov *z, int32_t r, int32_t m, int32_t rows, double *d, double *v) {
-    double off[HDI_KRYLOV_MAX];
-    int32_t i;
-    memset(v, 0, (size_t)m * (size_t)rows * sizeof *v);
-    for (i = 0; i < m; i++) {
-        d[i] = z->alpha[i][r];
-        off[i] = i + 1 < m ? z->beta[i + 1][r] : 0;
-    }
-    for (i = 0; i < rows; i++) v[(int64_t)(i < rows - 1 ? i : m - 1) * rows + i] = 1;
-    return hdi_tridiag_eigen(d, off, v, m, rows);
-}
+/* ---- functions of T ---- */
 
 /* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate -x exp(-x),
  * the function of the derivative. Tiny ones are rounding of modes that are gone. */
@@ -14682,57 +14677,33 @@ static double hdi_krylov_value(double mu, double tau, int rate) {
     return (rate ? -x : 1) * exp(-x);
 }
 
-/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
- * the right angle. What lies between them is below the maximum on them times the first number, and below that
- * on every other one times the second. Tuned on meshes of 1K to 1M vertices. The sine is its Taylor series up
- * to x^9, to 2e-9: with that of the C library come 6 KB of code for large arguments. */
-#define HDI_KRYLOV_BETWEEN 1.2
-#define HDI_KRYLOV_BETWEEN2 1.5
-
-static double hdi_krylov_point(int32_t k) {
-    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
-    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
-    const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
-    return low == k ? s * s : 1 - s * s;
-}
-
-/* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
- * tau/(ab) times minus the quotient in x, low and low + d, by expm1. */
-static double hdi_krylov_difference(double a, double fa, double b, double fb, double tau, int rate) {
-    double low, d, q;
-    if (fabs(a - b) > 0.1 * a) return (fa - fb) / (a - b);
-    if (!(a > HDI_KRYLOV_TINY && b > HDI_KRYLOV_TINY)) return 0;
-    low = tau * hdi_max(0, 1 / hdi_max(a, b) - 1);
-    d = tau / (a * b) * fabs(a - b);
-    q = d > 1e-8 ? -expm1(-d) / d : 1 - d / 2;
-    return tau / (a * b) * (rate ? exp(-low - d) - low * exp(-low) * q : q * hdi_max(fa, fb));
-}
-
-/* What error bounds need of T_m: its eigenvalues, and their weights in e_1 and between e_1 and e_m. */
-typedef struct hdi_ritz {
-    int32_t m, rate;
-    double beta, mu[HDI_KRYLOV_MAX], first[HDI_KRYLOV_MAX], both[HDI_KRYLOV_MAX];
-} hdi_ritz;
-
-static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t m, hdi_ritz *s, hd_error *e) {
-    const int whole = z->done[r] > 0;
-    const int32_t rows = whole ? m : 2;
-    double ends[2 * HDI_KRYLOV_MAX];
-    const double *v = whole ? z->eigen[r] + m : ends;
+/* T of right-hand side r after the steps so far, with its arrays in room [m (rows + 1)]. */
+static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t rows, double *room, hdi_ritz *s,
+                                 hd_error *e) {
+    double off[HDI_KRYLOV_MAX];
     int32_t i;
-    s->m = m;
+    s->m = z->steps;
+    s->rows = rows;
     s->rate = z->rate;
-    s->beta = z->beta[m][r];
-    if (whole) memcpy(s->mu, z->eigen[r], (size_t)m * sizeof *s->mu);
-    else if (!hdi_krylov_eigen(z, r, m, 2, s->mu, ends)) return hdi_lanczos_failed(e);
-    for (i = 0; i < m; i++) {
-        /* 1/(1 + g lambda); but what is left of a constant is only rounding */
+    s->beta = z->beta[s->m][r];
+    s->mu = room;
+    s->v = room + s->m;
+    if (!hdi_lanczos_eigen(&z->alpha[0][r], &z->beta[0][r], HDI_WIDE, s->m, rows, s->mu, off, s->v))
+        return hdi_lanczos_failed(e);
+    for (i = 0; i < s->m; i++)                   /* 1/(1 + g lambda); of a constant rounding is left */
         if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
             return hdi_not_semidefinite(e);
-        s->first[i] = v[(int64_t)i * rows];
-        s->both[i] = s->first[i] * v[(int64_t)i * rows + rows - 1];
-    }
     return HD_OK;
+}
+
+/* Right-hand side r is done: all of T's eigenvectors, which serve for all times. */
+static hd_status hdi_krylov_end(hdi_krylov *z, int32_t r, hd_error *e) {
+    const uint64_t m = (uint64_t)z->steps;
+    double *room = HDI_NEW(z->m->ctx, double, m * (m + 1), e);
+    hdi_free(z->m->ctx, z->ritz[r].mu);
+    z->ritz[r].mu = room;
+    z->done[r] = z->steps;
+    return room ? hdi_krylov_ritz(z, r, z->steps, room, z->ritz + r, e) : e->status;
 }
 
 /* |u|_B relative to |f|_B; tau = t/g. */
@@ -14740,48 +14711,23 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
     double sum = 0;
     int32_t i;
     for (i = 0; i < s->m; i++) {
-        const double part = s->first[i] * hdi_krylov_value(s->mu[i], tau, s->rate);
+        const double part = s->v[(int64_t)i * s->rows] * hdi_krylov_value(s->mu[i], tau, s->rate);
         sum += part * part;
     }
     return sqrt(sum);
-}
-
-/* The error bound at tau = t/g, relative to |f|_B. The error is beta times sum_j x_j y_j F[mu_j, S] v_(m+1),
- * with mu_j the eigenvalues of T, x and y the first and last rows of its eigenvectors, and F[.,.] the divided
- * difference. S has its eigenvalues in (0, 1], where the sum is a smooth function of them: its maximum on
- * enough points, times HDI_KRYLOV_BETWEEN, is taken for the bound, which is estimated therefore. */
-static double hdi_ritz_bound(const hdi_ritz *s, double tau) {
-    double f[HDI_KRYLOV_MAX], most = 0;
-    int32_t i, k;
-    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_value(s->mu[i], tau, s->rate);
-    for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
-        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, s->rate);
-        double sum = 0;
-        for (i = 0; i < s->m; i++)
-            sum += s->both[i] * hdi_krylov_difference(s->mu[i], f[i], at, fa, tau, s->rate);
-        most = hdi_max(most, fabs(sum));
-    }
-    return HDI_KRYLOV_BETWEEN * s->beta * most;
-}
-
-/* All of T's eigenvectors once a right-hand side is done. They serve for all times. */
-static hd_status hdi_krylov_vectors(hdi_krylov *z, int32_t r, hd_error *e) {
-    const int32_t m = z->done[r];
-    hdi_free(z->m->ctx, z->eigen[r]);
-    z->eigen[r] = HDI_NEW(z->m->ctx, double, (uint64_t)m * (uint64_t)(m + 1), e);
-    if (!z->eigen[r]) return e->status;
-    return hdi_krylov_eigen(z, r, m, m, z->eigen[r], z->eigen[r] + m) ? HD_OK : hdi_lanczos_failed(e);
 }
 
 /* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
  * zeros up to the longest basis. */
 static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, double *y) {
     const int32_t m = hdi_high32(z->done[r], 0);
-    const double *mu = z->eigen[r];
+    const hdi_ritz *s = z->ritz + r;
     int32_t i;
     memset(y, 0, (size_t)z->steps * sizeof *y);
-    for (i = 1; i <= m; i++)
-        hdi_axpy(z->f_norm[r] * mu[i * m] * hdi_krylov_value(mu[i - 1], t / z->g, z->rate), mu + i * m, y, m);
+    for (i = 0; i < m; i++) {
+        const double *v = s->v + i * m;
+        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, z->rate), v, y, m);
+    }
 }
 
 /* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
@@ -14839,125 +14785,72 @@ static void hdi_krylov_sum_run(const hdi_krylov *z, hdi_krylov_sum *a, hd_contex
     hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, a);
 }
 
-/* What a window hands on to the next may bring this share of the error that is asked for at the last time of
- * all. Answers there count as no smaller than the second number times what is handed on: where they are, a
- * later window begins with the fields again. */
-#define HDI_KRYLOV_SHARE 0.25
-#define HDI_KRYLOV_FADES 1e-3
+/* ---- what answers are off by ---- */
 
-/* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
- * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
-static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
-                                double fixed, double miss_bound[2], hd_error *e) {
-    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
-    hdi_ritz s;
-    int32_t q;
-    miss_bound[0] = miss_bound[1] = 0;
-    if (!(z->beta[z->steps][r] > 0)) return HD_OK;
-    if (hdi_krylov_ritz(z, r, z->steps, &s, e) < 0) return e->status;
-    for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
-        /* the last and the first are the worst, as a rule */
-        const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
-        const double bound = hdi_ritz_bound(&s, tau);
-        double asked = hdi_ritz_size(&s, tau);
-        asked = tol * sqrt(asked * asked + rest);
-        if (q == 0 && z->last > 0) {
-            const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
-            asked = HDI_KRYLOV_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_KRYLOV_FADES * asked);
-        } else asked -= before;
-        miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
-        miss_bound[1] = hdi_max(miss_bound[1], bound);
-    }
-    return HD_OK;
+/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
+ * the right angle. What lies between them is below the maximum on them times this number. Tuned on meshes of
+ * 1K to 1M vertices. The sine is its Taylor series up to x^9, to 2e-9: with that of the C library come 6 KB
+ * of code for large arguments. */
+#define HDI_KRYLOV_BETWEEN 1.2
+
+static double hdi_krylov_point(int32_t k) {
+    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
+    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
+    const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
+    return low == k ? s * s : 1 - s * s;
 }
 
-/* Convergence has stopped when so many steps do not halve what is missing. An answer that has died away has
- * no digits left, and none is missed when the error is below this, relative to f. Tuned on meshes of 1K to 1M
- * vertices. */
-#define HDI_KRYLOV_PATIENCE 12
-#define HDI_KRYLOV_FAILED 1e-6
-
-/* Steps to the next look, 1 to 8: each gains about a factor of two, and is taken to gain 2^(1/0.6). */
-#define HDI_KRYLOV_GAIN 1.1552453009332422   /* log 2/0.6 */
-static int32_t hdi_krylov_pace(double miss) {
-    const double steps = 1 + log(hdi_max(miss, 1)) / HDI_KRYLOV_GAIN;
-    return steps < 8 ? (int32_t)steps : 8;
+/* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
+ * tau/(ab) times minus the quotient in x, low and low + d, by expm1. */
+static double hdi_krylov_difference(double a, double fa, double b, double fb, double tau, int rate) {
+    double low, d, q;
+    if (fabs(a - b) > 0.1 * a) return (fa - fb) / (a - b);
+    if (!(a > HDI_KRYLOV_TINY && b > HDI_KRYLOV_TINY)) return 0;
+    low = tau * hdi_max(0, 1 / hdi_max(a, b) - 1);
+    d = tau / (a * b) * fabs(a - b);
+    q = d > 1e-8 ? -expm1(-d) / d : 1 - d / 2;
+    return tau / (a * b) * (rate ? exp(-low - d) - low * exp(-low) * q : q * hdi_max(fa, fb));
 }
 
-/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
- * |constants|_B^2. */
-static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol,
-                               const double *fixed, hd_context *ctx, hd_error *e) {
-    double best[HDI_WIDE], now[2], miss_all;
-    int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
-    hd_status worst = HD_OK;
-    for (r = 0; r < z->k; r++) {
-        left += z->done[r] == 0;
-        best[r] = HUGE_VAL;
-        best_m[r] = 0;
-    }
-    while (left > 0) {
-        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0) return e->status;
-        if (hdi_krylov_step(z, ctx, e) < 0) return e->status;
-        if (z->steps < look && z->steps < most) continue;
-        miss_all = 1;
-        for (r = 0; r < z->k; r++) {
-            if (z->done[r]) continue;
-            if (hdi_krylov_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
-            if (now[0] < best[r] / 2 && z->steps < most) {
-                best[r] = now[0];
-                best_m[r] = z->steps;
-            } else if (z->steps > best_m[r] + HDI_KRYLOV_PATIENCE || z->steps >= most) {
-                if (now[0] > 1 && now[1] > HDI_KRYLOV_FAILED)
-                    return hdi_fail(e, HD_ERR_NOT_CONVERGED,
-                                    "shift-and-invert Lanczos did not reach the tolerance");
-                if (now[0] > 1) worst = HD_WARN_ACCURACY;
-                now[0] = 1;
-            }
-            if (now[0] <= 1) {
-                z->done[r] = z->steps;
-                left--;
-                if (hdi_krylov_vectors(z, r, e) < 0) return e->status;
-            }
-            miss_all = hdi_max(miss_all, now[0]);
-        }
-        look = z->steps + hdi_krylov_pace(miss_all);
-    }
-    return worst;
-}
-
-/* Bound on what rounding does to the answer of right-hand side r after m steps, in the norm of B. With S V =
- * V T + ... + errors Phi_j of the steps, the answer is off by sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j, with
- * divided differences as in hdi_ritz_bound. The residual of a solve is an error that is no larger in the B
- * norm. y: the answer's coefficients. given: the error of the right-hand side, which is an error of the first
- * step. T's eigenvectors are there. */
-static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, int32_t m, double t, const double *y,
-                                 double given) {
-    double f[HDI_KRYLOV_MAX], most[HDI_KRYLOV_MAX], at_j[HDI_KRYLOV_MAX], sum = 0, size = 0;
-    const double *mu = z->eigen[r], *vectors = mu + m, tau = t / z->g, root = hdi_ratio_root(z->m->lap);
+/* With S V = V T + beta v_(m+1) e_m' + errors Phi_j of the steps, the answer is off by
+ *   beta (sum_k x_k V_mk F[mu_k, S]) v_(m+1) + sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j
+ * relative to |f|_B, with mu_k the eigenvalues of T, x the first row of its eigenvectors V, and F[.,.] the
+ * divided difference. S has its eigenvalues in (0, 1], where the sums are smooth functions of them. Their
+ * maxima on enough points, times HDI_KRYLOV_BETWEEN, are taken for bounds, which are estimated therefore:
+ * most [rows], for each row of V that is there. tau = t/g. */
+static void hdi_ritz_most(const hdi_ritz *s, double tau, double *most) {
+    double f[HDI_KRYLOV_MAX], sum[HDI_KRYLOV_MAX];
     int32_t i, j, k;
-    for (i = 0; i < m; i++) {
-        f[i] = hdi_krylov_value(mu[i], tau, z->rate);
-        most[i] = 0;
-        size += fabs(y[i]);
-    }
-    for (k = 2; k <= HDI_KRYLOV_POINTS; k += 2) {
-        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, z->rate);
-        memset(at_j, 0, (size_t)m * sizeof *at_j);
-        for (i = 0; i < m; i++) {
-            const double *v = vectors + (int64_t)i * m;
-            hdi_axpy(v[0] * hdi_krylov_difference(mu[i], f[i], at, fa, tau, z->rate), v, at_j, m);
+    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_value(s->mu[i], tau, s->rate);
+    for (j = 0; j < s->rows; j++) most[j] = 0;
+    for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, s->rate);
+        memset(sum, 0, (size_t)s->rows * sizeof *sum);
+        for (i = 0; i < s->m; i++) {
+            const double *v = s->v + (int64_t)i * s->rows;
+            hdi_axpy(v[0] * hdi_krylov_difference(s->mu[i], f[i], at, fa, tau, s->rate), v, sum, s->rows);
         }
-        for (j = 0; j < m; j++) most[j] = hdi_max(most[j], fabs(at_j[j]));
+        for (j = 0; j < s->rows; j++) most[j] = hdi_max(most[j], HDI_KRYLOV_BETWEEN * fabs(sum[j]));
     }
+}
+
+/* What rounding does to the answer of right-hand side r. The residual of a solve is an error that is no
+ * larger in the B norm. most: see above. y: the answer's coefficients. given: the error of the right-hand
+ * side, which is an error of the first step. */
+static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *most, const double *y,
+                                  double given) {
+    const double root = hdi_ratio_root(z->m->lap);
+    const int32_t m = z->done[r];
+    double sum = 0, size = 0;
+    int32_t j;
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
         const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
         const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r];
-        const double step = root * (solve + product) + 4 * DBL_EPSILON * size_j;
-        sum += HDI_KRYLOV_BETWEEN2 * most[j] * step;
+        sum += most[j] * (root * (solve + product) + 4 * DBL_EPSILON * size_j);
+        size += fabs(y[j]);
     }
-    return z->f_norm[r] * sum + HDI_KRYLOV_BETWEEN2 * most[0] * given + m * DBL_EPSILON * size;
+    return z->f_norm[r] * sum + most[0] * given + m * DBL_EPSILON * size;
 }
 
 /* The norm of w u + dw u' on the rim, in that of B^-1 and relative to |f|_B, at time s after z->from; with
@@ -14968,7 +14861,7 @@ static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const doubl
     double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0};
     int32_t i;
     for (i = 0; i < m; i++) {
-        const double mu = z->eigen[r][i], *v = z->eigen[r] + m + (int64_t)i * m;
+        const double mu = z->ritz[r].mu[i], *v = z->ritz[r].v + (int64_t)i * m;
         const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
         const double part = (z->rate ? -lambda : 1) * v[0] * exp(-s * lambda);
         if (!(mu > HDI_KRYLOV_TINY)) continue;
@@ -15024,18 +14917,18 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
-static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
-                                  hdi_lane *lane, hd_error *e) {
+static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
+                              hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r];
-    hdi_ritz s;
+    double most[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_MEASURED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
-        if (hdi_krylov_ritz(z, r, m, &s, e) < 0) return e->status;   /* its eigenvectors are there */
-        lane->off.solver = hdi_ritz_bound(&s, t / z->g) * z->f_norm[r];
-        lane->off.rounding = hdi_krylov_rounding(z, r, m, t, y, lane->rhs_off);
+        hdi_ritz_most(z->ritz + r, t / z->g, most);
+        lane->off.solver = z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
+        lane->off.rounding = hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
         if (HDI_HAS_LOCAL && z->rim) lane->off.local = hdi_rim_bound(z, r, t, e);
     }
     lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
@@ -15045,7 +14938,96 @@ static hd_status hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const dou
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
-    return e->status;
+}
+
+/* ---- steps until the bounds are met ---- */
+
+/* What a window hands on to the next may bring this share of the error that is asked for at the last time of
+ * all. Answers there count as no smaller than the second number times what is handed on: where they are, a
+ * later window begins with the fields again. */
+#define HDI_KRYLOV_SHARE 0.25
+#define HDI_KRYLOV_FADES 1e-3
+
+/* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
+ * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
+static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
+                                double fixed, double miss_bound[2], hd_error *e) {
+    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
+    double room[3 * HDI_KRYLOV_MAX], most[2];
+    hdi_ritz s;
+    int32_t q;
+    miss_bound[0] = miss_bound[1] = 0;
+    if (!(z->beta[z->steps][r] > 0)) return HD_OK;
+    if (hdi_krylov_ritz(z, r, 2, room, &s, e) < 0) return e->status;
+    for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
+        /* the last and the first are the worst, as a rule */
+        const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
+        double asked = hdi_ritz_size(&s, tau), bound;
+        hdi_ritz_most(&s, tau, most);
+        bound = s.beta * most[1];
+        asked = tol * sqrt(asked * asked + rest);
+        if (q == 0 && z->last > 0) {
+            const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
+            asked = HDI_KRYLOV_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_KRYLOV_FADES * asked);
+        } else asked -= before;
+        miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
+        miss_bound[1] = hdi_max(miss_bound[1], bound);
+    }
+    return HD_OK;
+}
+
+/* Convergence has stopped when so many steps do not halve what is missing. An answer that has died away has
+ * no digits left, and none is missed when the error is below this, relative to f. Tuned on meshes of 1K to 1M
+ * vertices. */
+#define HDI_KRYLOV_PATIENCE 12
+#define HDI_KRYLOV_FAILED 1e-6
+
+/* Steps to the next look, 1 to 8: each gains about a factor of two, and is taken to gain 2^(1/0.6). */
+#define HDI_KRYLOV_GAIN 1.1552453009332422   /* log 2/0.6 */
+static int32_t hdi_krylov_pace(double miss) {
+    const double steps = 1 + log(hdi_max(miss, 1)) / HDI_KRYLOV_GAIN;
+    return steps < 8 ? (int32_t)steps : 8;
+}
+
+/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
+ * |constants|_B^2. */
+static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol,
+                               const double *fixed, hd_context *ctx, hd_error *e) {
+    double best[HDI_WIDE], now[2], miss_all;
+    int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
+    hd_status worst = HD_OK;
+    for (r = 0; r < z->k; r++) {
+        left += z->done[r] == 0;
+        best[r] = HUGE_VAL;
+        best_m[r] = 0;
+    }
+    while (left > 0) {
+        if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0) return e->status;
+        if (hdi_krylov_step(z, ctx, e) < 0) return e->status;
+        if (z->steps < look && z->steps < most) continue;
+        miss_all = 1;
+        for (r = 0; r < z->k; r++) {
+            if (z->done[r]) continue;
+            if (hdi_krylov_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
+            if (now[0] < best[r] / 2 && z->steps < most) {
+                best[r] = now[0];
+                best_m[r] = z->steps;
+            } else if (z->steps > best_m[r] + HDI_KRYLOV_PATIENCE || z->steps >= most) {
+                if (now[0] > 1 && now[1] > HDI_KRYLOV_FAILED)
+                    return hdi_fail(e, HD_ERR_NOT_CONVERGED,
+                                    "shift-and-invert Lanczos did not reach the tolerance");
+                if (now[0] > 1) worst = HD_WARN_ACCURACY;
+                now[0] = 1;
+            }
+            if (now[0] <= 1) {
+                left--;
+                if (hdi_krylov_end(z, r, e) < 0) return e->status;
+            }
+            miss_all = hdi_max(miss_all, now[0]);
+        }
+        look = z->steps + hdi_krylov_pace(miss_all);
+    }
+    return worst;
 }
 
 /* ==== [24] ground ====
@@ -15177,35 +15159,30 @@ static hd_status hdi_source_check_point(const hd_sources *s, int64_t q, int last
         return hdi_source_fail(e, HD_ERR_NOT_FINITE, "source: the weight of a point is not finite", q, -1,
                                s->weight[q]);
     if (s->curve && s->length && !last && !(hdi_finite(s->length[q]) && s->length[q] >= 0))
-        return hdi_source_fail(e, hdi_finite(s->length[q]) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE,
-                               "source: the length of a piece is negative or not finite", q, -1,
-                               s->length[q]);
-    return HD_OK;
-}
-
-/* Checks the points from one to before another, a source. */
-static hd_status hdi_source_check(const hd_sources *s, int64_t begin, int64_t end, int32_t n, hd_error *e) {
-    if (begin < 0 || end <= begin) return hdi_fail(e, HD_ERR_ARGUMENT, "source: it has no point");
-    if (s->curve && end - begin < 2)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "source: a curve has at least two points");
-    if (end - begin > INT32_MAX / hdi_source_corners(s))
-        return hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
-    for (; begin < end; begin++)
-        if (hdi_source_check_point(s, begin, begin + 1 == end, n, e) < 0) return e->status;
+        return hdi_source_fail(e, HD_ERR_ARGUMENT, "source: the length of a piece is negative or not finite",
+                               q, -1, s->length[q]);
     return HD_OK;
 }
 
 /* Checks everything but whether points lie in faces, which matrices do not tell. n: vertices. */
 static hd_status hdi_sources_check(const hd_sources *s, int32_t n, hd_error *e) {
+    int64_t q;
     int32_t k;
     hdi_refuse(s->begin_zero || s->end_zero, "sources: not cleared before use", e);
     hdi_refuse(s->count < 0 || s->corners < 0, "sources: a number is negative", e);
     hdi_refuse(s->curve && s->weight, "source: points of a curve have no weights", e);
     if (e->status < 0) return e->status;
     if (s->count > 0 && !s->vertex) return hdi_missing(e);
-    for (k = 0; k < s->count; k++)
-        if (hdi_source_check(s, hdi_source_first(s, k), hdi_source_first(s, k + 1), n, e) < 0)
-            return hdi_source_place(s, k, e);
+    for (k = 0; k < s->count; k++) {
+        const int64_t begin = hdi_source_first(s, k), end = hdi_source_first(s, k + 1);
+        hdi_refuse(begin < 0 || end <= begin, "source: it has no point", e);
+        hdi_refuse(s->curve && end - begin < 2, "source: a curve has at least two points", e);
+        if (e->status >= 0 && end - begin > INT32_MAX / hdi_source_corners(s))
+            hdi_fail(e, HD_ERR_TOO_LARGE, "source: there are too many points");
+        for (q = begin; q < end && e->status >= 0; q++)
+            (void)hdi_source_check_point(s, q, q + 1 == end, n, e);
+        if (e->status < 0) return hdi_source_place(s, k, e);
+    }
     return HD_OK;
 }
 
@@ -15227,18 +15204,6 @@ static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacia
         for (i = 0; i < 3 && b > 0; i++) d[i] += (c < corners ? -b : b) * lap->xyz[hdi_triple(row) + i];
     }
     return hdi_norm3(d);
-}
-
-/* Divides weights by their sum, which size is the size of. */
-static hd_status hdi_terms_normalise(double *weight, int32_t n, double size, hd_error *e) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < n; q++) sum += weight[q];
-    if (!(sum > (double)n * DBL_EPSILON * size))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1,
-                            sum);
-    for (q = 0; q < n; q++) weight[q] /= sum;
-    return HD_OK;
 }
 
 /* Sums parts [n] of the same vertex of v, and leaves out zeros. */
@@ -15291,7 +15256,8 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     hd_error *e = in->e;
     hdi_scope work = hdi_scope_begin(in->ctx, e);
     hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
-    double *part = HDI_TAKE(&work, double, all), size;
+    double *part = HDI_TAKE(&work, double, all), size, sum = 0;
+    int32_t q;
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
@@ -15300,7 +15266,10 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
     to->vertex = vertex;
     to->weight = weight;
-    if (normal && e->status >= 0) (void)hdi_terms_normalise(weight, to->n, size, e);
+    for (q = 0; q < to->n; q++) sum += weight[q];
+    if (normal && e->status >= 0 && !(sum > (double)to->n * DBL_EPSILON * size))
+        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
+    for (q = 0; q < to->n && normal; q++) weight[q] /= sum;
     if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
     return hdi_scope_end(&work);
 }
@@ -15403,26 +15372,16 @@ static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double ima
     }
 }
 
-/* x = G x. Rows held are zero in both. work: a sweep's. */
-static void hdi_ground_solve(const hdi_elim *m, const hdi_ground *g, double *x, double *work) {
-    hdi_sweep z;
-    int32_t i;
-    for (i = 0; i < m->sym.n; i++)
-        if (g->held[i]) x[i] = 0;
-    z = hdi_sweep_open(&g->factor, 1, x, work);
-    hdi_sweep_run(&z, m->ctx);
-}
-
 /* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
  * neighbours have nearly the same value, so that little is lost. As an approximation of G b, x is off at v by
  * at most sqrt(G_vv) times off of v's component: |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
- * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components], or NULL. */
+ * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components]. */
 static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
                                 const double *extra, double *r, double *off) {
     const hd_laplacian *lap = m->lap;
     int32_t i;
     int64_t p;
-    if (off) memset(off, 0, (size_t)lap->n_components * sizeof *off);
+    memset(off, 0, (size_t)lap->n_components * sizeof *off);
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
@@ -15437,22 +15396,25 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
         if (g->held[i]) r[i] = 0;
         else if (!conserves) r[i] -= rest * x[i];
         size += conserves ? 0 : fabs(rest * x[i]);
-        if (!g->held[i] && off)
+        if (!g->held[i])
             off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
                 sqrt(hdi_max(0, g->diag[i]));
     }
 }
 
-/* x = G b, with one step of iterative refinement; off as above. r [n], sweep: work. */
+/* x = G b, with one step of iterative refinement; off as above. b is zero on the rows held. r [n], sweep:
+ * work. */
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
-    int32_t i;
-    memcpy(x, b, (size_t)m->sym.n * sizeof *x);
-    hdi_ground_solve(m, g, x, sweep);
-    hdi_ground_residual(m, g, b, x, NULL, r, NULL);
-    hdi_ground_solve(m, g, r, sweep);
-    for (i = 0; i < m->sym.n; i++) x[i] += r[i];
-    hdi_ground_residual(m, g, b, x, extra, r, off);
+    int32_t i, pass;
+    memset(x, 0, (size_t)m->sym.n * sizeof *x);
+    memcpy(r, b, (size_t)m->sym.n * sizeof *r);
+    for (pass = 0; pass < 2; pass++) {
+        hdi_sweep z = hdi_sweep_open(&g->factor, 1, r, sweep);
+        hdi_sweep_run(&z, m->ctx);
+        for (i = 0; i < m->sym.n; i++) x[i] += r[i];
+        hdi_ground_residual(m, g, b, x, extra, r, off);
+    }
 }
 
 /* Doubles of a ground's arrays, which begin with diag. */
@@ -18606,8 +18568,8 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         lane->status = status;
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
-        if (hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e) < 0)
-            return h->e->status;
+        hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e);
+        if (h->e->status < 0) return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
@@ -18674,14 +18636,10 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     int32_t i;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->heat->lane + i;
-        double moving = 0, size;
-        hdi_ritz s;
+        double size = 0;
         if (lane->skip) continue;
-        if (z->done[i] > 0) {
-            if (hdi_krylov_ritz(z, i, z->done[i], &s, h->e) < 0) return 0;
-            moving = z->f_norm[i] * hdi_ritz_size(&s, (to - z->from) / z->g);
-        }
-        size = sqrt(moving * moving + hdi_lane_means_norm2(lane, h->lap)) / 2;
+        if (z->done[i] > 0) size = z->f_norm[i] * hdi_ritz_size(z->ritz + i, (to - z->from) / z->g);
+        size = sqrt(size * size + hdi_lane_means_norm2(lane, h->lap)) / 2;
         if (lane->off.solver > heat->opts.tol * size || lane->off.rounding > heat->limit * size) return 0;
     }
     return 1;
