@@ -458,6 +458,55 @@ static void loc_patches(const char *spec, hd_kernel kernel, const char *plan) {
     ctx->byte_limit = 0;
 }
 
+/* Distances to all vertices by patches and balls, within the byte limit or as asked for, against those by poles of degree 14. A
+ * source is one vertex or three. */
+static void loc_distances(const char *spec, hd_distance_kind kind, const char *plan) {
+    const hd_laplacian *lap = kit_pair(spec);
+    hd_heat *local = kit_heat(lap, plan);
+    const int32_t n = lap->n, v[4] = {n / 2, n / 3, n / 3 + 1, n / 3 + 2};
+    const int64_t first[3] = {0, 1, 4};
+    const double t[2] = {trial_unit(lap) / 16, trial_unit(lap) / 64}, weight[4] = {1, 0.5, 0.2, 0.3};
+    double *D = KIT_NEW(double, 4 * (int64_t)n), *W = KIT_NEW(double, 4 * (int64_t)n);
+    hd_sources sources = hd_vertices(2, v);
+    hd_context *ctx = lap->context;
+    const uint64_t before = ctx->bytes_in_use;
+    const int32_t mark = kit_mark();
+    hd_report rep, all;
+    hd_error e;
+    int32_t i, q;
+    sources.first = first;
+    sources.weight = weight;
+    ctx->bytes_peak = before;
+    CHECK(hd_heat_distance(kit_heat(lap, "method=direct poles=kernel degree=14"), kind, 2, t, &sources, W, 0, &all, NULL) >= 0);
+    kit_release(mark);
+    if (!*plan) ctx->byte_limit = ctx->bytes_in_use + 3 * (ctx->bytes_peak - before) / 4;
+    if (CHECK_MSG(hd_heat_distance(local, kind, 2, t, &sources, D, 0, &rep, &e) == HD_OK, "%s: %s", spec, e.text)) {
+        CHECK_MSG(rep.method == HD_METHOD_LOCAL && rep.n_patches > 0 && (rep.n_patches == 1) == (rep.n_touched == lap->n_active), "%s: %d", spec, (int)rep.n_patches);
+        CHECK_MSG(!*plan || rep.n_patches > 1, "%s", spec);
+        CHECK_MSG(rep.error_bound < 1e-6 && rep.n_lost == 0 && rep.error_relative < 1e-4, "%s: %g, %g", spec, rep.error_bound, rep.error_relative);
+        CHECK(!ctx->byte_limit || ctx->bytes_peak <= ctx->byte_limit);
+        for (q = 0; q < 4; q++) {
+            const double size = dense_max_abs(W + q * n, n);
+            for (i = 0; i < n; i++) {
+                const double off = fabs(D[q * n + i] - W[q * n + i]), own = fmax(D[q * n + i], W[q * n + i]);
+                if (!CHECK_MSG(off <= 1.000001 * (rep.error_bound + all.error_bound) * size && off <= 1.000001 * (rep.error_relative + all.error_relative) * own,
+                               "%s, column %d, vertex %d: %g of %g", spec, q, i, off / size, rep.error_bound)) break;
+            }
+        }
+    }
+    ctx->byte_limit = 0;
+    kit_release(mark);
+    local = kit_heat(lap, "method=local");
+    {
+        int32_t far[2][4];
+        double d[2][4], u;
+        CHECK(hd_heat_sample(local, kind, t[1], NULL, 4, far[0], d[0], &rep, NULL) >= 0 && rep.method == HD_METHOD_LOCAL);
+        CHECK(hd_heat_sample(kit_heat(lap, "method=direct"), kind, t[1], NULL, 4, far[1], d[1], NULL, NULL) >= 0 && far[0][0] == far[1][0]);
+        for (i = 1; i < 4; i++) CHECK_MSG(fabs(d[0][i] - d[1][i]) < 1e-6 * d[1][1], "%s: point %d is %g from the others, not %g", spec, i, d[0][i], d[1][i]);
+        CHECK(hd_heat_distance(local, HD_DISTANCE_COMMUTE, 0, NULL, &sources, &u, 0, NULL, &e) == HD_ERR_ARGUMENT);
+    }
+}
+
 /* What has no local answer is refused. */
 static void loc_refused(void) {
     const hd_laplacian *lap = kit_pair("ico/3 fem");
@@ -468,7 +517,7 @@ static void loc_refused(void) {
     const hd_rational set = {0};
     hd_error e;
     memset(u, 0, (size_t)lap->n * sizeof *u);
-    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_set_rational(heat, 1, &set, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_apply(heat, 1, &t, 1, u, 0, u, 0, NULL, &e) == HD_OK && dense_max_abs(u, lap->n) == 0);
 }
@@ -516,6 +565,9 @@ static void test_local(void) {
     if (!CASES_FEW) loc_patches("flat/72/72/0.3 fem", HD_KERNEL_SYMMETRIC, "");
     loc_patches("inert/70/0 fem+held", HD_KERNEL_OPERATOR, "method=local");
     if (!CASES_FEW) loc_patches("bumpy/4/5 vor+id", HD_KERNEL_SYMMETRIC, "method=local");
+    loc_distances("flat/72/72/0.3 fem", HD_DISTANCE_WEIGHTED, "method=local");
+    loc_distances("inert/70/0 vor+held", HD_DISTANCE_CLASSICAL, "method=local");
+    if (!CASES_FEW) loc_distances("flat/72/72/0.3 vor", HD_DISTANCE_WEIGHTED, "");
     loc_refused();
     loc_own_set();
 }
