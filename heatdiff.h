@@ -11898,8 +11898,8 @@ static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     for (i = 0; e->status >= 0 && i < set->n_poles; i++) {
         if (!hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]))
             hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a pole or weight is not finite");
-        hdi_refuse(!(set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0)),
-                   "own pole set: theta needs Im > 0, or Im = 0 and Re > 0", e);
+        else if (!(set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0)))
+            hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: theta needs Im > 0, or Im = 0 and Re > 0");
         if (e->status < 0) e->pole = i;
     }
     return e->status;
@@ -13009,7 +13009,7 @@ static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, d
                 sum += second ? hdi_min(m, 1e140) * work[lap->L.col[p]] : m;
             }
             if (second) noise[i] = hdi_min(sum, 1e300);
-            else work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left anyway */
+            else work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left */
         }
     }
 }
@@ -13327,34 +13327,34 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
 }
 
 /* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed.
  * off: bound on its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
-                           double norm2, double off, const double *x, int64_t stride) {
+                           double norm, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
     const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
-    const double factor = hdi_resolvent_factor(theta);
+    const double factor = hdi_resolvent_factor(theta), norm2 = norm * norm;
     double sum = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
         if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
     lane->first_pole = p;
-    lane->first_norm = sqrt(norm2) + error;
+    lane->first_norm = norm + error;
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
     if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
         lane->negative = 1;
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* |x|_B^2 of a complex vector; tmp [2 n]. */
-static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
+/* |x|_B of a complex vector; tmp [2 n]. */
+static double hdi_b_norm_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
     const hdi_system mass = {lap, 0, {1, 0}};
     double sum = 0;
     int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, lap->n_active);
+    if (!lap->B) return sqrt(hdi_cnorm2w(x, lap->mass, lap->n_active));
     (void)hdi_system_apply(&mass, x, (hd_c64 *)(void *)tmp);
     for (i = 0; i < lap->n_active; i++) sum += x[i].re * tmp[2 * i] + x[i].im * tmp[2 * i + 1];
-    return hdi_max(0, sum);
+    return sqrt(hdi_max(0, sum));
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
@@ -13373,8 +13373,8 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
         hdi_lane_residual(lane, fam->lap, &fam->set, i, k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
     if (fam->set.n_poles > 0)
-        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp),
-                       k->r_norm, &k->x->re, 2);
+        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm_complex(fam->lap, k->x, lane->tmp), k->r_norm,
+                       &k->x->re, 2);
 }
 
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
@@ -13663,14 +13663,13 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
 static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
                            int64_t stride, hdi_lane *to) {
     const int pair = p != m->lone;
-    const double norm = sqrt(sum[0][q] + (pair ? sum[0][q + 4] : 0));
-    const double size = sqrt(sum[1][q] + (pair ? sum[1][q + 4] : 0));
     const double *at = x + stride * hdi_high32(to->watch, 0);
-    hdi_lane_residual(to, m->lap, &m->set, p, norm, size, 0);
+    double all[3];
+    int s;
+    for (s = 0; s < 3; s++) all[s] = sqrt(hdi_max(0, sum[s][q] + (pair ? sum[s][q + 4] : 0)));
+    hdi_lane_residual(to, m->lap, &m->set, p, all[0], all[1], 0);
     if (to->watch >= 0) to->pole_value[p] = hdi_c(at[0], pair ? at[4] : 0);
-    if (p > m->lone + 1) return;
-    hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, sum[2][q] + (pair ? sum[2][q + 4] : 0)), norm + size, x,
-                   stride);
+    if (p <= m->lone + 1) hdi_lane_first(to, m->lap, &m->set, p, all[2], all[0] + all[1], x, stride);
 }
 
 /* Checks the solutions x of k lanes for the poles of pack i, or for i < 0 the lone real pole, and adds their
@@ -17360,7 +17359,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
     if (report) {
         const double error = hdi_pole_error(k);
-        const double norm = sqrt(hdi_b_norm2_complex(lap, k->x, lane->tmp)) - error;
+        const double norm = hdi_b_norm_complex(lap, k->x, lane->tmp) - error;
         report->iterations = k->iterations;
         report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
         report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
