@@ -11082,6 +11082,37 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
+/* y = A x on rows; returns x'y. */
+static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
+    const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
+    const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
+    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *mass = a->lap->mass;
+    hd_c64 dot = hdi_c(0, 0);
+    const int32_t n = a->lap->n_active;
+    int32_t i;
+    int64_t p = 0;
+    for (i = 0; i < n; i++) {
+        const int64_t end = Ap[i + 1];
+        hd_c64 l = hdi_c(0, 0), b = l;
+        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
+        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
+        if (Bx) {
+            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
+            for (; p < end; p++) {
+                const hd_c64 v = x[Aj[p]];
+                l = hdi_cadd(l, hdi_cscale(Lx[p], v));
+                b = hdi_cadd(b, hdi_cscale(Bx[p], v));
+            }
+        } else {
+            for (; p < end; p++) l = hdi_cadd(l, hdi_cscale(Lx[p], x[Aj[p]]));
+            b = hdi_cscale(mass[i], x[i]);
+        }
+        y[i] = hdi_cadd(hdi_cscale(a->t, l), hdi_cmul(a->theta, b));
+        dot = hdi_cadd(dot, hdi_cmul(x[i], y[i]));
+    }
+    return dot;
+}
+
 typedef struct hdi_precond_row hdi_precond_row;
 
 /* A preconditioner of the system a: U and D^-1; while it is made, the values of A. */
@@ -11090,12 +11121,12 @@ typedef struct hdi_precond {
     const hdi_upper *up;
     hdi_system a;
     hd_c64 *u;       /* [nnz of up] or NULL */
-    hd_c64 *d;       /* [n]; jacobi and more */
+    hd_c64 *d;       /* [n] */
 } hdi_precond;
 
 /* All there is to know of a kind: a new one is a row of the table below, and its functions. */
 struct hdi_precond_row {
-    int32_t rows, entries;   /* values for each row and for each entry above the diagonal */
+    int32_t entries;         /* values of U for each entry above the diagonal */
     int32_t vectors;         /* [n] each: work of apply */
     double steps;            /* of cocg, about, relative to those with mildl */
     void (*make)(const hdi_precond *m, hd_c64 *work);   /* A to D and U; NULL: U is 0. work [n] */
@@ -11215,22 +11246,22 @@ static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, 
     }
 }
 
-static const hdi_precond_row hdi_preconds[] = {   /* by hd_precond: rows, entries, vectors, steps, ... */
-    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
-    {0, 0, 0, 5.5, NULL, 0, hdi_none_apply},
-    {1, 0, 0, 5, NULL, 0, hdi_jacobi_apply},
-    {1, 1, 0, 2, hdi_ssor, 0, hdi_upper_apply},
-    {1, 1, 0, 1.4, hdi_ildl, 0, hdi_upper_apply},
-    {1, 1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
+static const hdi_precond_row hdi_preconds[] = {   /* by hd_precond: entries, vectors, steps, ... */
+    {1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
+    {0, 0, 5.5, NULL, 0, hdi_none_apply},
+    {0, 0, 5, NULL, 0, hdi_jacobi_apply},
+    {1, 0, 2, hdi_ssor, 0, hdi_upper_apply},
+    {1, 0, 1.4, hdi_ildl, 0, hdi_upper_apply},
+    {1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
 };
 
 static int hdi_precond_known(hd_precond kind) {
     return (size_t)kind < sizeof hdi_preconds / sizeof *hdi_preconds;
 }
 
-/* Values of one, and one more, so that there is something to allocate. upper: entries above the diagonal. */
+/* Values of one. upper: entries above the diagonal. */
 static uint64_t hdi_precond_size(const hdi_precond_row *row, int64_t n, int64_t upper) {
-    return (uint64_t)(row->rows * n + row->entries * upper + 1);
+    return (uint64_t)(n + row->entries * upper);
 }
 
 /* Fills m, whose arrays are there. work [n] */
@@ -11240,7 +11271,7 @@ static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
     const hd_csr *L = &a->lap->L;
     int32_t i;
     int64_t p = 0, q = 0;
-    for (i = 0; row->rows && i < L->n_rows; i++) {
+    for (i = 0; i < L->n_rows; i++) {
         for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
             const int32_t j = L->col[p];
             const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
@@ -11250,7 +11281,7 @@ static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
         }
     }
     if (row->make) row->make(m, work);
-    for (i = 0; row->rows && i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
+    for (i = 0; i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
 /* ==== [20] iterative ====
@@ -11267,37 +11298,6 @@ static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
  * caller takes them out of the right-hand side (1'b = 0 for each component), and every step keeps them out
  * of its direction. So the smallest eigenvalue does not slow the iteration. The caller adds their part of
  * the solution, which is known exactly, and heat is conserved. */
-
-/* y = A x on rows; returns x'y. */
-static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
-    const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
-    const int32_t *HDI_RESTRICT Aj = a->lap->L.col;
-    const double *HDI_RESTRICT Lx = a->lap->L.val, *HDI_RESTRICT Bx = a->lap->B, *mass = a->lap->mass;
-    hd_c64 dot = hdi_c(0, 0);
-    const int32_t n = a->lap->n_active;
-    int32_t i;
-    int64_t p = 0;
-    for (i = 0; i < n; i++) {
-        const int64_t end = Ap[i + 1];
-        hd_c64 l = hdi_c(0, 0), b = l;
-        HDI_PREFETCH_AT(Lx, p + HDI_AHEAD);
-        HDI_PREFETCH_AT(Aj, p + HDI_AHEAD);
-        if (Bx) {
-            HDI_PREFETCH_AT(Bx, p + HDI_AHEAD);
-            for (; p < end; p++) {
-                const hd_c64 v = x[Aj[p]];
-                l = hdi_cadd(l, hdi_cscale(Lx[p], v));
-                b = hdi_cadd(b, hdi_cscale(Bx[p], v));
-            }
-        } else {
-            for (; p < end; p++) l = hdi_cadd(l, hdi_cscale(Lx[p], x[Aj[p]]));
-            b = hdi_cscale(mass[i], x[i]);
-        }
-        y[i] = hdi_cadd(hdi_cscale(a->t, l), hdi_cmul(a->theta, b));
-        dot = hdi_cadd(dot, hdi_cmul(x[i], y[i]));
-    }
-    return dot;
-}
 
 /* Takes out of r its part in B W, if L 1 = 0: mean [n_components] receives W'r relative to the masses. */
 static void hdi_deflate(const hd_laplacian *lap, hd_c64 *r, hd_c64 *mean) {
@@ -11855,24 +11855,22 @@ static void hdi_rational_rate(hd_rational *set) {
 
 static hd_status hdi_rational_check(const hd_rational *set, hd_error *e) {
     int32_t i;
-    if (set->n_poles < 0 || set->n_poles > HD_MAX_POLES)
-        return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: n_poles is not in 0..HD_MAX_POLES");
-    if (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
-        hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0)
-        return hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
-    if (!hdi_finite(set->t) || set->t < 0 || !hdi_finite(set->largest) || set->largest < 0 ||
-        (set->t > 0 && !(set->lambda_max > 0)))
-        return hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: t, lambda_max or largest is out of its range");
-    for (i = 0; i < set->n_poles; i++) {
-        const int bad = !hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]);
-        if (!bad && (set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0))) continue;
-        hdi_fail(e, bad ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT,
-                 bad ? "own pole set: a pole or weight is not finite"
-                     : "own pole set: theta needs Im > 0, or Im = 0 and Re > 0");
-        e->pole = i;
-        return e->status;
+    hdi_refuse(set->n_poles < 0 || set->n_poles > HD_MAX_POLES,
+               "own pole set: n_poles is not in 0..HD_MAX_POLES", e);
+    hdi_refuse(!hdi_finite(set->t) || set->t < 0 || !hdi_finite(set->largest) || set->largest < 0 ||
+               (set->t > 0 && !(set->lambda_max > 0)),
+               "own pole set: t, lambda_max or largest is out of its range", e);
+    if (e->status >= 0 && (!hdi_finite(set->a0) || hdi_nan(set->max_error) || set->max_error < 0 ||
+                           hdi_nan(set->max_weighted_error) || set->max_weighted_error < 0))
+        hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a0 is not finite or an error negative");
+    for (i = 0; e->status >= 0 && i < set->n_poles; i++) {
+        if (!hdi_cfinite(set->theta[i]) || !hdi_cfinite(set->a[i]))
+            hdi_fail(e, HD_ERR_NOT_FINITE, "own pole set: a pole or weight is not finite");
+        else if (!(set->theta[i].im > 0 || (set->theta[i].im == 0 && set->theta[i].re > 0)))
+            hdi_fail(e, HD_ERR_ARGUMENT, "own pole set: theta needs Im > 0, or Im = 0 and Re > 0");
+        if (e->status < 0) e->pole = i;
     }
-    return HD_OK;
+    return e->status;
 }
 
 /* How the errors of a set are known: those of a filter are measured. */
@@ -12906,13 +12904,12 @@ static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
 
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
-    hdi_ledger one = {{hdi_bound_of(off.rational), hdi_bound_of(off.solver), hdi_bound_of(off.rounding),
-                       hdi_bound_of(off.local)},
-                      {0, 0, 0, 0}, fabs(value), fabs(value) > 0 ? fabs(value) : HUGE_VAL, -1, 1,
+    const double size = fabs(value);
+    hdi_ledger one = {hdi_parts_scale(1, off), {0, 0, 0, 0}, size, size > 0 ? size : HUGE_VAL, -1, 1,
                       !hdi_finite(value)};
     const double all = hdi_parts_sum(&one.off);
     /* to the exact value, which is at least |value| - all */
-    if (l->relative >= 0) one.relative = all == 0 ? 0 : hdi_quotient(all, one.largest - all);
+    if (l->relative >= 0) one.relative = all == 0 ? 0 : hdi_quotient(all, size - all);
     hdi_ledger_join(l, &one);
 }
 
@@ -12927,20 +12924,12 @@ static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
-/* An error relative to the largest value. */
-static double hdi_ledger_part(double off, double largest) { return hdi_bound_of(hdi_quotient(off, largest)); }
-
 /* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
-    hdi_parts part = l->off;
-    double total;
+    const hdi_parts part = hdi_parts_scale(hdi_quotient(1, l->largest), l->off);   /* of the largest value */
+    const double total = hdi_parts_sum(&part);
     if (l->n_values == 0) return;
     if (l->lost) hdi_fail(&rep->error, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles");
-    part.rational = hdi_ledger_part(part.rational, l->largest);
-    part.solver = hdi_ledger_part(part.solver, l->largest);
-    part.rounding = hdi_ledger_part(part.rounding, l->largest);
-    part.local = hdi_ledger_part(part.local, l->largest);
-    total = hdi_parts_sum(&part);
     rep->error_rational = hdi_max(rep->error_rational, part.rational);
     rep->error_solver = hdi_max(rep->error_solver, part.solver);
     rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
@@ -12977,21 +12966,19 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
 #define HDI_NOISE_TERMS 8
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
-    int32_t i;
+    int32_t i, second;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON / 2;
-        double sum = lap->B ? 0 : theta * lap->mass[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            sum += t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
-        work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left anyway */
-    }
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = lap->B ? 0 : theta * lap->mass[i] * work[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            sum += hdi_min(t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0), 1e140) *
-                   work[lap->L.col[p]];
-        noise[i] = hdi_min(sum, 1e300);
+    for (second = 0; second < 2; second++) {     /* M times ones, then times the weights of its rows */
+        for (i = 0; i < lap->n_active; i++) {
+            const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON / 2;
+            double sum = lap->B ? 0 : theta * lap->mass[i] * (second ? work[i] : 1);
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                const double m = t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
+                sum += second ? hdi_min(m, 1e140) * work[lap->L.col[p]] : m;
+            }
+            if (second) noise[i] = hdi_min(sum, 1e300);
+            else work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left */
+        }
     }
 }
 
@@ -13308,34 +13295,34 @@ static void hdi_lane_clear_off(hdi_lane *lane) {
 }
 
 /* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm2: |x|_B^2 as computed.
+ * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed.
  * off: bound on its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
-                           double norm2, double off, const double *x, int64_t stride) {
+                           double norm, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
     const double error = off * hdi_ratio_root(lap) / hdi_pole_distance(theta);
-    const double factor = hdi_resolvent_factor(theta);
+    const double factor = hdi_resolvent_factor(theta), norm2 = norm * norm;
     double sum = 0;
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
         if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
     lane->first_pole = p;
-    lane->first_norm = sqrt(norm2) + error;
+    lane->first_norm = norm + error;
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
     if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
         lane->negative = 1;
     if (hdi_finite(factor)) lane->energy = hdi_min(lane->energy, factor * (fabs(sum) + lane->f_norm * error));
 }
 
-/* |x|_B^2 of a complex vector; tmp [2 n]. */
-static double hdi_b_norm2_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
+/* |x|_B of a complex vector; tmp [2 n]. */
+static double hdi_b_norm_complex(const hd_laplacian *lap, const hd_c64 *x, double *tmp) {
     const hdi_system mass = {lap, 0, {1, 0}};
     double sum = 0;
     int32_t i;
-    if (!lap->B) return hdi_cnorm2w(x, lap->mass, lap->n_active);
+    if (!lap->B) return sqrt(hdi_cnorm2w(x, lap->mass, lap->n_active));
     (void)hdi_system_apply(&mass, x, (hd_c64 *)(void *)tmp);
     for (i = 0; i < lap->n_active; i++) sum += x[i].re * tmp[2 * i] + x[i].im * tmp[2 * i + 1];
-    return hdi_max(0, sum);
+    return sqrt(hdi_max(0, sum));
 }
 
 /* u = a0 f - sum a_i x_i, in the order of the poles, and the bounds on its error but for the rational one. */
@@ -13354,8 +13341,8 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
         hdi_lane_residual(lane, fam->lap, &fam->set, i, k[i].r_norm, sqrt(hdi_cnorm2w(x, fam->noise, n)), 1);
     }
     if (fam->set.n_poles > 0)
-        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm2_complex(fam->lap, k->x, lane->tmp),
-                       k->r_norm, &k->x->re, 2);
+        hdi_lane_first(lane, fam->lap, &fam->set, 0, hdi_b_norm_complex(fam->lap, k->x, lane->tmp), k->r_norm,
+                       &k->x->re, 2);
 }
 
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
@@ -13644,14 +13631,13 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
 static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
                            int64_t stride, hdi_lane *to) {
     const int pair = p != m->lone;
-    const double norm = sqrt(sum[0][q] + (pair ? sum[0][q + 4] : 0));
-    const double size = sqrt(sum[1][q] + (pair ? sum[1][q + 4] : 0));
     const double *at = x + stride * hdi_high32(to->watch, 0);
-    hdi_lane_residual(to, m->lap, &m->set, p, norm, size, 0);
+    double all[3];
+    int s;
+    for (s = 0; s < 3; s++) all[s] = sqrt(hdi_max(0, sum[s][q] + (pair ? sum[s][q + 4] : 0)));
+    hdi_lane_residual(to, m->lap, &m->set, p, all[0], all[1], 0);
     if (to->watch >= 0) to->pole_value[p] = hdi_c(at[0], pair ? at[4] : 0);
-    if (p > m->lone + 1) return;
-    hdi_lane_first(to, m->lap, &m->set, p, hdi_max(0, sum[2][q] + (pair ? sum[2][q + 4] : 0)), norm + size, x,
-                   stride);
+    if (p <= m->lone + 1) hdi_lane_first(to, m->lap, &m->set, p, all[2], all[0] + all[1], x, stride);
 }
 
 /* Checks the solutions x of k lanes for the poles of pack i, or for i < 0 the lone real pole, and adds their
@@ -13762,16 +13748,14 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     }
 }
 
-/* Has B - sigma diag(B) no negative pivot, and so no negative eigenvalue (Sylvester)? value [nnz]: room. */
-static int hdi_lap_exceeds(const hd_laplacian *lap, double sigma, double *value, hdi_factor *f, hd_error *e) {
+/* Has B - sigma diag(B) no negative pivot, and so no negative eigenvalue (Sylvester)? */
+static int hdi_lap_exceeds(const hd_laplacian *lap, double sigma, hdi_factor *f, hd_error *e) {
     hdi_values v;
-    int32_t i;
-    int64_t p;
     memset(&v, 0, sizeof v);
-    v.real = value;
-    for (i = 0; i < lap->n_active; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            value[p] = lap->L.col[p] == i ? (1 - sigma) * lap->b_diag[i] : lap->B[p];
+    v.l = lap->B;
+    v.t = 1;
+    v.b_diag = lap->b_diag;
+    v.theta[0] = hdi_c(-sigma, 0);
     if (hdi_factor_run(f, &v, e) >= 0) return f->all.negative == 0;
     if (e->status == HD_ERR_BREAKDOWN) hdi_error_clear(e);   /* a pivot of zero proves nothing */
     return 0;
@@ -13787,31 +13771,25 @@ static int hdi_lap_exceeds(const hd_laplacian *lap, double sigma, double *value,
  * (nnz(L) + 2 n) x'diag(B)x (after Rump 2006), which is added to sigma. Where all tries fail, B has a
  * negative eigenvalue, or the ratio is not known. */
 static hd_status hdi_lap_ratio(hd_laplacian *lap, hd_error *e) {
-    hdi_scope s = hdi_scope_begin(lap->context, e);
-    const double dominant = hdi_max(lap->b_ratio, 0);
+    const double dominant = hdi_max(lap->b_ratio, 0), least = hdi_max(dominant, HDI_RATIO_LEAST);
     const hdi_order order = {HD_ORDERING_MINIMUM_DEGREE, NULL, NULL};
-    double *value = HDI_TAKE(&s, double, lap->L.nnz), sigma = 0.5, slack;
+    double sigma = 0.5, slack;
     hdi_symbolic sym;
     hdi_factor f;
     memset(&sym, 0, sizeof sym);
     memset(&f, 0, sizeof f);
     lap->b_ratio = dominant;
-    if (e->status >= 0 && hdi_symbolic_order(&sym, &lap->L, &order, lap->context, e) >= 0 &&
+    if (hdi_symbolic_order(&sym, &lap->L, &order, lap->context, e) >= 0 &&
         hdi_factor_make(&f, NULL, &sym, 1, lap->context, e) >= 0) {
         slack = DBL_EPSILON * ((double)sym.nnz + 2.0 * lap->n_active);
-        for (; e->status >= 0 && sigma >= hdi_max(dominant, HDI_RATIO_LEAST); sigma /= 2) {
-            if (hdi_lap_exceeds(lap, sigma + slack, value, &f, e)) {
-                lap->b_ratio = sigma;
-                break;
-            }
-            if (sigma < 0.5 || dominant > 0 || e->status < 0) continue;
-            if (!hdi_lap_exceeds(lap, HDI_RATIO_LEAST, value, &f, e) && f.all.negative)
-                hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
-        }
+        while (sigma >= least && e->status >= 0 && !hdi_lap_exceeds(lap, sigma + slack, &f, e)) sigma /= 2;
+        if (sigma >= least) lap->b_ratio = sigma;
+        else if (dominant == 0 && !hdi_lap_exceeds(lap, HDI_RATIO_LEAST, &f, e) && f.all.negative)
+            hdi_fail(e, HD_ERR_NOT_POSITIVE, "B is not positive definite: it has a negative pivot");
     }
     hdi_factor_free(&f);
     hdi_symbolic_free(lap->context, &sym);
-    return hdi_scope_end(&s);
+    return e->status;
 }
 
 /* Takes the values of new matrices, or leaves all as it was. */
@@ -17284,7 +17262,7 @@ static double hdi_shifted_load(const hd_laplacian *lap, const hdi_family *fam, c
 static void hdi_shifted_tell(const hd_heat *heat, double b_norm, hd_solve_report *report) {
     const hdi_iteration *k = heat->lane->k;
     const double error = hdi_pole_error(k);
-    const double norm = sqrt(hdi_b_norm2_complex(heat->lap, k->x, heat->lane->tmp)) - error;
+    const double norm = hdi_b_norm_complex(heat->lap, k->x, heat->lane->tmp) - error;
     report->iterations = k->iterations;
     report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
     report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
