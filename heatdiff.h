@@ -486,8 +486,8 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 10 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. Diagonals: direct, on patches with margins. For fields, columns, entries, pairs
-     * and diagonals without pole sets; needs b_ratio > 0 */
+     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. For queries with
+     * a time, without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -1124,7 +1124,8 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  *        14 takes over if a bound would be above 3.5e-7, and at large t the few eigenpairs left, if the byte
  *        limit allows them. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds
  *        may exceed 1e-6
- * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
+ * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source. Patches
+ *        as in hd_heat_diagonal, with poles of degree 14.
  *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
  *        its inversion; biharmonic: also those of one pole */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -1194,8 +1195,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * k        see hd_query
  * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. For the direct method
  *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
- *          they are estimates. Of diagonals the direct method alone is known, not what patches take
- * Errors   HD_ERR_ARGUMENT: diagonals with method local
+ *          they are estimates. What patches take is not known
+ * Errors   HD_ERR_ARGUMENT: diagonals, or distances to all, with method local
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
