@@ -486,8 +486,8 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 10 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. For queries with
-     * a time, without pole sets; needs b_ratio > 0 */
+     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. For queries
+     * with a time, without pole sets; needs b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
