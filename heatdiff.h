@@ -1154,7 +1154,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 
 /* Single entries (i, j) of K_t or k_t. The bound is relative to the largest |value| of all, and may say
  * nothing about small ones.
- * Cost   one column for each distinct j, with n doubles of memory at a time */
+ * Cost   one column for each distinct j, with n doubles of memory at a time. For 256 vertices or more with
+ *        i = j, method local, or auto: the diagonal on patches around these. */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
@@ -21586,6 +21587,38 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
 }
 
+/* Are the entries asked for, in values [n_times][n], all of the diagonal, and are patches around their
+ * vertices the way to them? Then it is done. */
+static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
+                                  const int32_t *j, double *values) {
+    const hd_laplacian *lap = h->heat->source;
+    int may = HDI_HAS_DIAGONAL && n >= HDI_PATCH_LEAST && hdi_patches_can(h->heat);
+    int32_t *rows, q, v;
+    hdi_diagonals to;
+    hdi_patches x;
+    int64_t p;
+    for (p = 0; p < n && may; p++) may = i[p] == j[p];
+    for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
+    if (!may) return 0;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    to.mass = mass;
+    to.ldd = (size_t)lap->n;
+    to.D = HDI_TAKE_ZERO(&h->s, double, to.ldd * (uint64_t)h->ask.n_times);
+    to.rows = rows = HDI_TAKE(&h->s, int32_t, lap->n_active);
+    if (h->e->status < 0) return 1;
+    for (p = 0; p < n; p++) to.D[i[p]] = 1;
+    for (v = 0; v < lap->n; v++)
+        if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
+    if (to.n_rows < HDI_PATCH_LEAST) return 0;
+    x.to = &to;
+    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
+    else if (!hdi_patches_pay(&x) || hdi_patches_run(&x, HDI_PATCHES_PAY) < 0) return h->e->status < 0;
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
+        for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
+    return 1;
+}
+
 /* ==== [28] diffusion ====
  * Owns distances: the metric of a kind and a time, one to all, pairs, farthest points; and estimates of what
  * queries take. May call [27] and [24].
@@ -24546,6 +24579,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
         hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
+    if (h.e->status >= 0 && hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
+        return hdi_heat_end(&h);
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
