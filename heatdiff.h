@@ -18815,7 +18815,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
         next = INT32_MAX;
         for (i = first; i < l->n && l->n <= most; i++) {
             hdi_reached at = l->at[i];
-            const double along = at.way + hdi_local_edge(lap, at.row);
+            const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
             if (i == level_end) {
                 level++;
                 level_end = l->n;
@@ -21197,7 +21197,7 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
-#define HDI_PATCH_REACH 0.55
+#define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
 #define HDI_PATCH_ROW 7500
