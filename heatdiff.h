@@ -18,7 +18,7 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. The implementation compiles in about 12 s at -O2: give it a file of its own.
+   and link with -lm. The implementation compiles in about 12 s: give it a file of its own.
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -30,16 +30,15 @@
    Conventions
      sign     L is minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
-     t        usually c h^2, where h = lap->h is the mean edge length. Below h^2 heat sees the mesh rather
-              than the surface.
+     t        usually c h^2 with the mean edge length h = lap->h. Below h^2 heat sees the mesh, not the
+              surface.
      kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
               b_i. The pointwise kernel k_t = K_t B^-1, unit 1/area, is symmetric: its column i diffuses one
               unit of heat at vertex i.
      border   natural (Neumann): no heat leaves. The border, or any vertices, can be held at zero (Dirichlet);
               heat leaves there.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: their row and
-              column are those of the identity in K_t, and zero in k_t. Those of held vertices are zero in
-              both.
+              column are those of the identity in K_t, and zero in k_t. Held vertices have zeros in both.
      norm     |f|_B = sqrt(f' B f).
 
    Contents
@@ -69,25 +68,21 @@
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                for contexts without an allocator; define both or none
      HEATDIFF_FILENAME         "name" of this file, if you renamed it and the compiler has no __FILE_NAME__
-     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large real fronts without AVX2 and
-                               AVX-512
+     HEATDIFF_USE_BLAS         a BLAS (32-bit integers) for large real fronts without AVX2 and AVX-512
      HEATDIFF_NO_SIMD          plain C: no kernels for AVX2, AVX-512 and NEON
-     HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, or atomics of GCC,
-                               Clang or MSVC
+     HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, or without atomics
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More of them make the build smaller, where -ffunction-sections -Wl,--gc-sections does not drop enough. What
-   is left out returns HD_ERR_NOT_BUILT. HD_METHOD_AUTO chooses among what is there.
+   More of them make the build smaller. What is left out returns HD_ERR_NOT_BUILT, and HD_METHOD_AUTO chooses
+   among the rest: some error bounds are larger then, and what exceeds byte_limit may be an error.
      HEATDIFF_NO_DIRECT        factorisations: hd_ldl_*, method krylov; implies NO_LOCAL, NO_POLE_FACTORS,
-                               NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices may be smaller
-     HEATDIFF_NO_LOCAL         method local. Diagonals beyond byte_limit are an error
+                               NO_GEODESIC, NO_SPECTRUM
+     HEATDIFF_NO_LOCAL         method local
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
-     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
-                               Bounds of method direct are larger
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and where heat flows out, are
-                               larger
-     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors beyond byte_limit are an error
+     HEATDIFF_NO_SPECTRUM      hd_spectrum_*
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
@@ -105,12 +100,12 @@
    Threads
      There is no global or thread-local state. An object or a context serves one thread at a time. Only a
      Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each.
-     The library's own threads belong to a context. They start with its first long work, sleep between calls,
-     and end with the last object made with it. Results are the same to the last bit for any number of them.
-     If each of your threads has a plan, set hd_context.n_threads = 1.
-     A forked child may use and free the objects of its parent. Do not fork while another thread is inside the
-     library. With glibc older than 2.34 link with -lpthread; otherwise programs run on one thread. On Windows
-     the implementation includes windows.h.
+     A context's own threads start with its first long work, sleep between calls, and end with the last object
+     made with it. Results are the same to the last bit for any number of them. If each of your threads has a
+     plan, set hd_context.n_threads = 1.
+     A forked child may use and free its parent's objects. Do not fork while another thread is in the library.
+     With glibc older than 2.34 link with -lpthread, or all runs on one thread. On Windows the implementation
+     includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -143,7 +138,7 @@
 extern "C" {
 #endif
 
-/* A complex number. Same layout as C99 double complex and std::complex<double>. */
+/* A complex number, laid out as C99 double complex and std::complex<double>. */
 typedef struct hd_c64 { double re, im; } hd_c64;
 
 /* Negative is an error, positive means "usable, but read the report". */
@@ -180,14 +175,14 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or field, or as a function says */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    double value;          /* the offending one, or 0. HD_ERR_MEMORY_LIMIT: what the limit must be at least */
+    double value;          /* the offending one, or 0. HD_ERR_MEMORY_LIMIT: the limit must be at least this */
 } hd_error;
 
 /* What a progress callback returns. Any other value is HD_ERR_ARGUMENT. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
 /* Called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL: HD_ERR_MEMORY. free
- * receives the size that was asked for. Stacks of threads do not come from here. */
+ * receives the size asked for. Stacks of threads do not come from here. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -197,8 +192,7 @@ typedef struct hd_allocator {
 /* One task of a parallel loop. worker numbers the threads; 0 is the calling one. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets on x86-64 with GCC and Clang; default: the processor's best. Results agree up to rounding.
- * */
+/* Instruction sets of x86-64 with GCC and Clang; default: the best. Results agree up to rounding. */
 typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512 } hd_simd;
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
@@ -207,14 +201,12 @@ typedef struct hd_threads hd_threads;            /* started and ended by the lib
  * with it, and must not be copied meanwhile. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
-    uint64_t byte_limit;        /* most bytes in use; 0: no limit. Where one way exceeds it, others are tried
-    */
+    uint64_t byte_limit;        /* most bytes in use; 0: no limit. Ways that need more are avoided */
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread. HD_PROGRESS_CANCEL ends the running
-     * function with HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip
-     * edges", "order", "analyse", "factor", "invert" (selected inversion), "precondition", "solve", "sample".
-     * */
+    /* Called now and then in long work, by the calling thread. HD_PROGRESS_CANCEL ends the function with
+     * HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges",
+     * "order", "analyse", "factor", "invert" (selected inversion), "precondition", "solve", "sample". */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
 
@@ -222,8 +214,8 @@ typedef struct hd_context {
      * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    int32_t n_threads;          /* without parallel_for, calling one included; 0: all processors of the
-    process */
+    int32_t n_threads;          /* with the calling one; 0: a thread for each processor. Not for parallel_for
+    */
     hd_simd simd;
 
     /* Filled by the library. */
@@ -238,8 +230,7 @@ typedef struct hd_context {
 /* How many threads work for this context. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
-/* A sparse matrix by compressed rows, whose columns ascend and occur once. hd_csr_free frees the library's.
- * */
+/* A sparse matrix by compressed rows; columns ascend and occur once. hd_csr_free frees the library's. */
 typedef struct hd_csr {
     int32_t n_rows, n_cols;
     int64_t nnz;
@@ -252,8 +243,8 @@ typedef struct hd_csr {
 /* A zero in options is the default, as is a NULL pointer to them. Clear a struct before you fill it in:
  * begin_zero and end_zero must be zero.
  * context       default: the Laplacian's, if there is one
- * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere. Errors:
- *               HD_ERR_INDEX (row) if it is no permutation
+ * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere.
+ *               HD_ERR_INDEX (row): it is no permutation
  * factor_nnz    non-zeros of one factor L, diagonal included; 0 without a factorisation
  * factor_flops  real floating-point operations of all factorisations */
 
@@ -285,8 +276,7 @@ typedef enum hd_triangulation {
     /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
      * opposite an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles from
-     * neighbours. */
+    /* Meshes: the same on two glued sheets; no weight is negative. Points: triangles from neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -322,8 +312,7 @@ typedef struct hd_mesh {
     const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
-     * next, no longer than the other two together. Faces at an edge agree up to 1e-12; two vertices have one
-     * edge only. */
+     * next. Faces at an edge agree up to 1e-12; two vertices have one edge only. */
     const double *lengths;
     int32_t n_faces;
     const int64_t *face_ptr;    /* [n_faces + 1] of polygons: where the corners of each begin, from 0 */
@@ -340,16 +329,14 @@ typedef struct hd_mesh {
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: zero area (polygons: up to rounding), or below three corners
-    */
+    int32_t n_zero_area;             /* left out: zero area (polygons: up to rounding), or below 3 corners */
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
     int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more, whose weights are summed */
     int64_t n_misoriented_edges;     /* with two faces that run along them in the same direction */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative weight (polygons: positive entries of L; most have some). They break the maximum
-     * principle. */
+    /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
@@ -373,19 +360,18 @@ typedef struct hd_point_report {
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L */
-    /* Places whose neighbours spread across their plane over 0.45 times as far as along it: creases, rims,
-     * tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
+    /* Places whose neighbours do not lie near a plane: creases, rims, tips, noise, and sheets closer than
+     * about 1.5 spacings, where heat may cross over. */
     int32_t n_not_flat;
 } hd_point_report;
 
-/* The pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that are not held, in the
- * caller's order. */
+/* The pair (L, B) on one pattern, read only. Rows: vertices with mass and not held, in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n, n_active;        /* vertices of the caller; rows */
     int32_t n_held;
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
-    double lambda_max;          /* >= all eigenvalues of B^-1 L, up to five times; HUGE_VAL if b_ratio is 0 */
+    double lambda_max;          /* 1/area; bound on the eigenvalues of B^-1 L; HUGE_VAL if b_ratio is 0 */
     double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
@@ -398,12 +384,9 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
     double *component_mass;     /* [n_components] infinite where heat is lost to held vertices */
-    /* B >= b_ratio diag(B), proven: 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to
-     * itself). 0: unknown. */
-    double b_ratio;
-    /* Where L 1 = 0, for matrices up to 4 DBL_EPSILON sum_j |L_ij| in each row. 1: everywhere; 2: on some
-     * components; 0: on none, or unknown. */
-    int32_t conserves;
+    double b_ratio;             /* B >= b_ratio diag(B), proven: diagonal B 1, fem at most 1/2; 0: unknown */
+    int32_t conserves;          /* L 1 = 0 up to rounding: 1 everywhere, 2 on some components, 0 no or unknown
+    */
     hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
@@ -461,23 +444,22 @@ typedef struct hd_filter {
     /* >= 0. Take 1/weight near the eigenvalues that f lets pass; for a wave exp(-a), and tol = 1e-7. */
     double weight;
     int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
-    /* > 0: no eigenvalue lies between 0 and this, such as hd_spectrum's second value, and c may take any
-     * value there. It halves the poles of filters that are not smooth at 0. */
+    /* > 0: no eigenvalue lies between 0 and this, such as hd_spectrum's second value, and c is free there. It
+     * halves the poles of filters that are not smooth at 0. */
     double lambda_min;
     int32_t constant;           /* 1: c may have an a0, for filters that do not fade at large lambda */
     int32_t end_zero;
 } hd_filter;
 
 typedef enum hd_method {
-    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, ask for direct.
-     * */
+    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, use direct. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on a ball of radius 10 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. Queries need a
-     * time and no pole sets; b_ratio > 0 */
+    /* The same on a ball of radius 10 sqrt(t) or more around the source, or where a field is not zero;
+     * answers beyond are 0. Diagonals, and distances to all: direct, on patches. Needs a time, no pole sets,
+     * and b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -492,7 +474,7 @@ typedef enum hd_ordering {
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
-    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), with the preconditioner of t L + |theta| B */
+    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013) */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -516,7 +498,7 @@ typedef struct hd_heat_opts {
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
     double cut;                 /* sparse columns leave out values below this times the largest */
-    hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
+    hd_ordering ordering;
     const int32_t *perm;
     hd_context *context;
     int32_t end_zero;
@@ -525,7 +507,7 @@ typedef struct hd_heat_opts {
 /* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
 typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
-/* Each source gives a column. It is a vertex, or points inside faces, on edges or at vertices, each with a
+/* Each source gives a column. It is a vertex, or points in faces, on edges or at vertices, each with a
  * weight, or a curve through points. In formulas it is a functional c of fields that are linear on each face:
  * c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
 typedef struct hd_sources {
@@ -536,7 +518,7 @@ typedef struct hd_sources {
      * Zeros in bary put a point on an edge or at a vertex. */
     int32_t corners;
     /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
-     * lies in one face, edges and corners included, and weighs its length. To close it, repeat the first. */
+     * lies in one face, edges included, and weighs its length. To close it, repeat the first. */
     int32_t curve;
     const int32_t *vertex;      /* [corners] of each point */
     const double *bary;         /* [corners] of each point: >= 0, sum 1 up to 1e-6; NULL: the corners' mean */
@@ -549,14 +531,13 @@ typedef struct hd_sources {
  * and have no time. */
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: at large t d is |b_i -
-     * b_j|/sqrt(area). */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d is |b_i - b_j|/sqrt(area) */
     HD_DISTANCE_WEIGHTED,
     HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
-/* How a part of an error bound is known. Of several answers the report holds the largest number. */
+/* How a part of an error bound is known; of several answers the largest number. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
@@ -575,7 +556,7 @@ typedef struct hd_report {
     const char *reason;         /* of this method */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
-    hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
+    hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos */
     int32_t degree, n_poles;    /* 0 for Lanczos */
     int64_t iterations;         /* of all systems and fields; Lanczos: steps */
     int64_t pole_iterations[HD_MAX_POLES];  /* of all fields */
@@ -591,10 +572,10 @@ typedef struct hd_report {
     /* Fields and columns: bound on |error|_B / |answer|_B; otherwise HUGE_VAL. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound on the error of each value relative to itself; otherwise, or if a
-     * value may be falsely zero, HUGE_VAL. */
+    /* Diagonals, distances, pairs: bound on each relative error; else, or if a zero may be wrong, HUGE_VAL.
+     * */
     double error_relative;
-    double smallest;            /* diagonals and distances: the smallest value that is not zero */
+    double smallest;            /* diagonals and distances: the smallest non-zero value */
     int64_t n_lost;             /* distances with at most about one sure digit */
     int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
@@ -611,8 +592,8 @@ typedef struct hd_spectrum_opts {
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x, to be read only. The Laplacian must outlive them, without
- * updates. */
+/* The smallest eigenpairs of L x = lambda B x, read only. The Laplacian must outlive them, without updates.
+ * */
 typedef struct hd_spectrum {
     int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
@@ -659,10 +640,10 @@ typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are within what the byte limit leaves */
     double flops;               /* real floating-point operations of factorisations, inversions and solves */
-    double seconds;             /* on one idle core, up to a factor of about 2; slivers may take longer */
+    double seconds;             /* on one idle core, up to a factor of about 2 */
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if a bound would be too large, and poles of degree 14 or eigenpairs take over. With this much
-     * room the direct method answers as without a limit. */
+    /* The same if poles of degree 14 or eigenpairs take over for a better bound. With this much room the
+     * direct method answers as without a limit. */
     double bytes_most;
 } hd_cost;
 
@@ -695,7 +676,7 @@ typedef struct hd_geodesic_opts {
     /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
      * distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
-    hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
+    hd_geodesic_mass mass;      /* the diagonal of B, of little influence */
     hd_ordering ordering;
     const int32_t *perm;
     hd_context *context;
@@ -712,7 +693,7 @@ typedef struct hd_geodesic_opts {
 /* The worst of all columns of a call. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
-    hd_error error;             /* if status < 0 */
+    hd_error error;             /* as err, if status < 0 */
     double t, h;
     int32_t n_components, n_stages;   /* n_stages: heat solves, several where heat fades below 1e-200 */
     hd_ordering ordering;
@@ -762,9 +743,9 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
 /* The Laplacian of a mesh, which may have non-manifold edges and several components.
  * triangles kinds fem, voronoi-cot, cot
- * polygons  kind polygon: faces may be neither planar nor convex, the pattern of L contains their diagonals,
- *           and triangles have the cotangent L. The kinds of triangles split every face into a fan from its
- *           first corner; out->mesh counts triangles then, errors name the polygon
+ * polygons  kind polygon: faces may be neither planar nor convex, L couples all corners of a face, and
+ *           triangles have the cotangent L. The kinds of triangles split faces into fans from their first
+ *           corner; out->mesh counts triangles then, errors name the polygon
  * points    kinds voronoi-exp, exp. Default bandwidth2: s = m (m/h^2)/4, within 0.3 m and m, where m is the
  *           mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
  *           non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1 to
@@ -773,17 +754,15 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
  *           in the tangent planes form a soup of triangles, each of which counts a third. Points in no star
  *           are inert, as are searched points at the place of an earlier one. Sheets closer than two spacings
  *           (random points: three) stay separate only if nbr leaves out the other sheet
- * Delaunay, tufted: the surface and its vertices stay. With voronoi-cot or cot heat obeys the maximum
- * principle
+ * Delaunay, tufted: the surface and its vertices stay; voronoi-cot and cot obey the maximum principle
  * lengths   intrinsic geometry, such as a flat torus; no nested dissection
  * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex or face, value),
  *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (face, vertex,
  *        value: a coordinate, area or weight beyond 1e100, a non-zero size below 1e-100, an impossible
- *        length, or one that two faces disagree on). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE
- *        (row)
+ *        length, or one that faces disagree on). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
- * Source see hd_laplacian_kind; Delaunay: Bobenko, Springborn 2007; tufted: Sharp, Crane 2020, points section
- *        5.7. Exponential weights are cut by distance, so that L is symmetric */
+ * Source see hd_laplacian_kind; Delaunay: Bobenko, Springborn 2007; tufted: Sharp, Crane 2020, section 5.7:
+ *        points */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
@@ -791,8 +770,8 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
  * its mirror entry is stored too.
  * L      n x n, symmetric positive semi-definite; checked: L_ii >= 0 and L_ij^2 <= L_ii L_jj. Heat is
  *        conserved if its rows sum to zero
- * B      n x n, symmetric positive definite; checked on the diagonal, by a factorisation if some row is not
- *        dominated by its diagonal, and later by solvers. Rows without non-zeros are inert vertices
+ * B      n x n, symmetric positive definite; checked on the diagonal, by a factorisation unless it is
+ *        diagonally dominant, and later by solvers. Rows without non-zeros are inert vertices
  * h      for lap->h; 0 if there is none
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if a row's |entries| sum to more than
  *        1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with row,
@@ -808,8 +787,7 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 
 /* New positions for the same faces, of an updatable Laplacian. Plans on lap keep their analysis, and use the
  * new values from the next query on; none may be at work meanwhile. Rows, pattern, held vertices and the
- * faces left out stay; faces that lose their area are counted. All else is that of a new Laplacian, to the
- * last bit.
+ * faces left out stay; faces that lose their area are counted. All else is as in a new Laplacian.
  * mesh   n as before, and positions; its faces are not read
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: all its faces have lost their area) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
@@ -826,8 +804,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 /* ---- neighbours of points ---- */
 
 /* The k nearest points of each query point, exactly.
- * index      [k m] ids, nearest first, equally distant ones by id; -1 beyond n. A point of the set finds
- * itself
+ * index      [k m] ids by distance, then id; -1 beyond n. Points of the set find themselves
  * distance2  [k m] or NULL: squared distances, infinite beyond n
  * xyz, query [3 n], [3 m] coordinates of at most 1e100; query NULL: all n points, m = n
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
@@ -845,12 +822,11 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets out [n_times] that share poles: theta_i/t[q] is the same for all q. One set of factors serves
- * every time.
+/* Kernel sets out [n_times] with one set of factors for every time: theta_i/t[q] is the same for all q.
  * t      [n_times] > 0, in any order
  * tol    of max_weighted_error; at 1e-6, times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
  * Errors HD_ERR_ARGUMENT: a time is not positive (row), or no set has this ratio of the times (value)
- * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
+ * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
 
@@ -861,14 +837,13 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
  * for example exp(-2 t lambda), and should not be negative.
  * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ
  *            only in the weights a. max_error is the largest |f - c| on 42,000 points
- * filters    [count] degrees rise until tol or max_degree is reached. Several filters ignore max_degree, and
- *            take at most HD_MAX_POLES pairs
+ * filters    [count] degrees rise until tol or max_degree. Several take up to HD_MAX_POLES pairs instead
  * lambda_max that of the Laplacian, or more; 1/area
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
  * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
- * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; several functions:
- *            Lietaert, Meerbergen, Perez, Vandereycken 2022 */
+ * Source     Nakatsukasa, Sete, Trefethen 2018; several functions: Lietaert, Meerbergen, Perez, Vandereycken
+ *            2022 */
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
@@ -907,8 +882,8 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 /* ---- direct solver ---- */
 
 /* The factorisation P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for
- * complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation, such as t L
- * + theta B. One analysis serves any number of factorisations. Only the first of each kind allocates. */
+ * complex-symmetric ones (A = A', never conjugated) with a real part that is definite after a rotation, as t
+ * L + theta B. One analysis serves any number of factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -927,9 +902,7 @@ typedef struct hd_ldl_report {
     int64_t factor_nnz;         /* without padding */
     int64_t stored;             /* the same with padding */
     double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
-    /* Largest |pivot| / largest |diagonal entry of A|: what is lost without pivoting. At most 3.8 for uniform
-     * sets and 4.2 for kernel sets. */
-    double growth;
+    double growth;              /* largest |pivot| / largest |diagonal entry of A|: lost without pivoting */
     double smallest_pivot;      /* smallest |pivot|, relative to the same */
     int32_t n_negative;         /* real: negative pivots, as many as negative eigenvalues */
 } hd_ldl_report;
@@ -1015,8 +988,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        fields:  HD_ERR_NOT_FINITE (row, column)
  *        pairs:   HD_ERR_INDEX (vertex; row: which pair)
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
- *                 points, vertex): not as hd_sources asks, or its weights or lengths sum to less than 1e-100
- *                 or more than 1e100
+ *                 points, vertex): not as hd_sources asks, or sums of weights or lengths outside 1e-100 ..
+ *                 1e100
  *        method:  HD_ERR_ARGUMENT. Diagonals, traces, samples and distances to all vertices need auto, direct
  *                 or local; distances by commute, biharmonic or a filter need auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
@@ -1033,7 +1006,7 @@ HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const doubl
                                      hd_report *report, hd_error *err);
 
 /* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass; default degree 14.
- * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
+ * report bounds are relative to the derivative: infinite where that is 0
  * Errors HD_ERR_ARGUMENT with a pole set of your own
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
  * one t share factors, and the adjoint is that of the matrix applied, up to rounding. If G is the gradient of
@@ -1069,8 +1042,8 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
 
 /* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
- * the integral 1. For wave filters D/Z are wave kernel signatures. Each of several filters has a column, a Z
- * and a bound, which is looser than that of one alone.
+ * the integral 1. For wave filters D/Z are wave kernel signatures. Several filters have a column, a Z and a
+ * bound each, looser than that of one.
  * D      n x n_times, or NULL
  * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
  * bound  [n_times] or NULL: of the absolute error of each Z
@@ -1079,18 +1052,17 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local: patches made to fit the byte limit; half of the memory takes up to twice as long. Auto takes
- *        patches where they cost less, or where factors of the whole mesh exceed the limit
+ *        local: patches that fit the byte limit; half the memory takes up to twice as long. Auto takes
+ *        patches where they cost less, or factors of the whole mesh exceed the limit
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
 /* Times t [n_times] that suit the area A = 1'B1 (kind exp: the squared area): evenly spaced in log t from
- * 0.0024 A to 0.37 A, where about 300 and two eigenvalues matter; one time is the geometric mean. To suit the
- * first eigenvalue, take c/value[n_constant] of hd_spectrum instead: c = 1 shows tips and branches, 0.1
- * details (Gebal et al. 2009).
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
+ * 0.0024 A to 0.37 A; one time is the geometric mean. To suit the first eigenvalue, take c/value[n_constant]
+ * of hd_spectrum: c = 1 shows tips and branches, 0.1 details (Gebal et al. 2009).
+ * Source Weyl's law */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
@@ -1102,8 +1074,8 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
  *        into several components or such vertices. Where heat is lost they are those of L^-1
  * report bounds are for d itself. The default degree rises to 14 where they need it; at large t the few
- *        eigenpairs left take over, if the byte limit allows. Above about 170,000 vertices bounds between the
- *        two may exceed 1e-6
+ *        eigenpairs left take over, if the byte limit allows. Between the two bounds may exceed 1e-6 above
+ *        170,000 vertices
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
  *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
  *        its inversion; biharmonic: also those of one pole */
@@ -1145,17 +1117,17 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
  * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY: n_poor is not 0, or proven is 0
  * Cost   for about 100 pairs one real factorisation and some 250 solves; at the end 4 n count^2 flops.
  *        Memory: the vectors twice, some 400 more, and a factor
- * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
+ * Source Grimes, Lewis, Simon 1994 */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, by eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x) x_i(y)
  * and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
- * bound  NULL, or of the output's shape: bounds on the error of each value. Pairs left out add at most exp(-t
- *        next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
- * Cost   2 n count flops for each column; weighted distances or the diagonal of K_t with a full B some ten
- *        times as many */
+ * bound  NULL, or of the output's shape: of the error of each value. Pairs left out add at most exp(-t next)
+ *        sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
+ * Cost   2 n count flops for each column; some ten times as many for weighted distances or the diagonal of
+ *        K_t with a full B */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err);
@@ -1171,7 +1143,7 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
  * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. They are an upper
- *          bound for the direct method, by a few percent, and estimates for others. What patches take is not
+ *          bound for the direct method, by a few percent, and estimates for others; what patches take is not
  *          known
  * Errors   HD_ERR_ARGUMENT: diagonals, or distances to all, with method local
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
@@ -1206,13 +1178,13 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
  * D        n x count in the unit of xyz: |phi - phi_s|, with the mean phi_s of the source's points weighted
  *          by their heat; zero at vertices that are sources, HUGE_VAL in components without one and at
  *          vertices without mass. Errors are of the order of h: a few percent on coarse meshes, about one on
- *          fine ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by as much. Where
- *          a source is no vertex, D is exact at the corners of its faces
+ *          fine ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by as much. Around
+ *          a source that is no vertex, D is exact at the corners of its faces
  * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
  *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
  *          a report is given
- * Cost     two solves and two passes over the faces for each source; another solve with several points in a
- *          component or every 450 edges or so at t = h^2, two more passes with a report. Eight vertices
+ * Cost     two solves and two passes over the faces for each source; a solve more with several points in a
+ *          component, and for every 450 edges or so at t = h^2; two passes more with a report. Eight vertices
  *          together are three times as fast. Calls with vertices alone allocate only if there are more than
  *          before */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
