@@ -4,8 +4,7 @@
 
    A surface is a pair of sparse symmetric matrices: the stiffness matrix L, positive semi-definite, and the
    mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L). This file
-   builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
-   exponential,
+   builds (L, B) from a mesh or points, and applies K_t by a rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
@@ -30,8 +29,7 @@
    Conventions
      sign     L is minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
-     t        usually c h^2 with the mean edge length h = lap->h. Below h^2 heat sees the mesh, not the
-              surface.
+     t        usually c h^2, h = lap->h the mean edge length. Below h^2 heat sees the mesh, not the surface.
      kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
               b_i. The pointwise kernel k_t = K_t B^-1, unit 1/area, is symmetric: its column i diffuses one
               unit of heat at vertex i.
@@ -64,17 +62,17 @@
    Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
-     HEATDIFF_AUDIT            slow asserts as well; set by itself under the address sanitizer
+     HEATDIFF_AUDIT            slow asserts as well; on under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                for contexts without an allocator; define both or none
      HEATDIFF_FILENAME         "name" of this file, if you renamed it and the compiler has no __FILE_NAME__
-     HEATDIFF_USE_BLAS         a BLAS (32-bit integers) for large real fronts without AVX2 and AVX-512
+     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large real fronts without AVX2
      HEATDIFF_NO_SIMD          plain C: no kernels for AVX2, AVX-512 and NEON
      HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, or without atomics
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
    More of them make the build smaller. What is left out returns HD_ERR_NOT_BUILT, and HD_METHOD_AUTO chooses
-   among the rest: some error bounds are larger then, and what exceeds byte_limit may be an error.
+   among the rest; some error bounds are larger then, and what exceeds byte_limit may be an error.
      HEATDIFF_NO_DIRECT        factorisations: hd_ldl_*, method krylov; implies NO_LOCAL, NO_POLE_FACTORS,
                                NO_GEODESIC, NO_SPECTRUM
      HEATDIFF_NO_LOCAL         method local
@@ -88,7 +86,7 @@
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
-   Macros wherever the file is included, the same everywhere; none changes a public type or prototype
+   Macros wherever the file is included, the same everywhere
      HEATDIFF_STATIC           all functions are static, for a single file that uses them
      HEATDIFF_API              your own linkage attribute
 
@@ -100,9 +98,9 @@
    Threads
      There is no global or thread-local state. An object or a context serves one thread at a time. Only a
      Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each.
-     A context's own threads start with its first long work, sleep between calls, and end with the last object
-     made with it. Results are the same to the last bit for any number of them. If each of your threads has a
-     plan, set hd_context.n_threads = 1.
+     A context's own threads run from its first long work to the end of its last object, and sleep between
+     calls. Results are the same to the last bit for any number of them. If each of your threads has a plan,
+     set hd_context.n_threads = 1.
      A forked child may use and free its parent's objects. Do not fork while another thread is in the library.
      With glibc older than 2.34 link with -lpthread, or all runs on one thread. On Windows the implementation
      includes windows.h.
@@ -214,8 +212,7 @@ typedef struct hd_context {
      * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    int32_t n_threads;          /* with the calling one; 0: a thread for each processor. Not for parallel_for
-    */
+    int32_t n_threads;          /* calling one included; 0: as many as processors; unused with parallel_for */
     hd_simd simd;
 
     /* Filled by the library. */
@@ -293,7 +290,8 @@ typedef struct hd_laplacian_opts {
      * mean edge lengths. Default 1e-5, at most 1; negative: not at all. */
     double mollify;
     int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
-    int32_t updatable;          /* 1: allows updates, of given meshes in space and matrices */
+    /* 1: allows updates (triangles and polygons in space, as given; matrices); 90 bytes for each triangle */
+    int32_t updatable;
     hd_border border;           /* of meshes; points and matrices: use held */
     int32_t n_held;
     const int32_t *held;        /* [n_held] more vertices held at zero; ids may repeat */
@@ -319,7 +317,7 @@ typedef struct hd_mesh {
     const int32_t *corner;      /* vertex ids: three for each triangle, or by face_ptr */
     const uint16_t *corner_u16; /* or this, of triangles */
     /* Tufted points: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at most 256; 30
-     * nearest ones suit. Point i, points at its place and repeats do no harm. NULL: searched. */
+     * nearest ones suit. Point i itself and repeats do no harm. NULL: searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
@@ -329,11 +327,11 @@ typedef struct hd_mesh {
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    int32_t n_zero_area;             /* left out: zero area (polygons: up to rounding), or below 3 corners */
+    int32_t n_zero_area;             /* left out: zero area (polygons: up to rounding), or < 3 corners */
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
     int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more, whose weights are summed */
-    int64_t n_misoriented_edges;     /* with two faces that run along them in the same direction */
+    int64_t n_misoriented_edges;     /* with two faces of opposite orientation */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
     /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. */
@@ -371,7 +369,7 @@ typedef struct hd_laplacian {
     int32_t n_held;
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
-    double lambda_max;          /* 1/area; bound on the eigenvalues of B^-1 L; HUGE_VAL if b_ratio is 0 */
+    double lambda_max;          /* bound on the eigenvalues of B^-1 L, 1/area; HUGE_VAL if b_ratio is 0 */
     double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
@@ -384,9 +382,8 @@ typedef struct hd_laplacian {
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
     double *component_mass;     /* [n_components] infinite where heat is lost to held vertices */
-    double b_ratio;             /* B >= b_ratio diag(B), proven: diagonal B 1, fem at most 1/2; 0: unknown */
-    int32_t conserves;          /* L 1 = 0 up to rounding: 1 everywhere, 2 on some components, 0 no or unknown
-    */
+    double b_ratio;             /* proven B >= b_ratio diag(B): 1 if diagonal, <= 1/2 if fem; 0: unknown */
+    int32_t conserves;          /* where L 1 = 0: 1 everywhere, 2 on some components, 0 on none or unknown */
     hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
@@ -441,7 +438,7 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0. Take 1/weight near the eigenvalues that f lets pass; for a wave exp(-a), and tol = 1e-7. */
+    /* >= 0. Take 1/weight near the eigenvalues that f lets pass; for a wave exp(-a) and tol = 1e-7. */
     double weight;
     int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
     /* > 0: no eigenvalue lies between 0 and this, such as hd_spectrum's second value, and c is free there. It
@@ -458,12 +455,12 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 10 sqrt(t) or more around the source, or where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches. Needs a time, no pole sets,
-     * and b_ratio > 0 */
+     * answers beyond are 0. Diagonals, and distances to all: direct, on patches. Needs a time and b_ratio >
+     * 0; not for pole sets */
     HD_METHOD_LOCAL
 } hd_method;
 
-/* In which a factorisation eliminates rows. */
+/* The order of elimination. */
 typedef enum hd_ordering {
     HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
     HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
@@ -504,19 +501,17 @@ typedef struct hd_heat_opts {
     int32_t end_zero;
 } hd_heat_opts;
 
-/* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
+/* K_t, or k_t = K_t B^-1. */
 typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
-/* Each source gives a column. It is a vertex, or points in faces, on edges or at vertices, each with a
- * weight, or a curve through points. In formulas it is a functional c of fields that are linear on each face:
- * c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
+/* Each source gives a column. It is a vertex, points with weights, or a curve through points. In formulas
+ * it is a functional c of fields that are linear on each face: c_v is what it takes of vertex v. Set count
+ * and vertex, or see hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
     const int64_t *first;       /* [count + 1] where the points of each source begin; NULL: one each */
-    /* Vertices a point lies between: 1 at a vertex, 2 on an edge, 3 in a triangle, more in polygons. 0: 1.
-     * Zeros in bary put a point on an edge or at a vertex. */
-    int32_t corners;
+    int32_t corners;            /* of each point: 1 at a vertex, 2 on an edge, 3 or more in a face; 0: 1 */
     /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
      * lies in one face, edges included, and weighs its length. To close it, repeat the first. */
     int32_t curve;
@@ -531,13 +526,13 @@ typedef struct hd_sources {
  * and have no time. */
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d is |b_i - b_j|/sqrt(area) */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d tends to |b_i - b_j|/sqrt(area) */
     HD_DISTANCE_WEIGHTED,
     HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
-/* How a part of an error bound is known; of several answers the largest number. */
+/* How a part of an error bound is known. For several answers the report holds the largest. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
@@ -572,11 +567,10 @@ typedef struct hd_report {
     /* Fields and columns: bound on |error|_B / |answer|_B; otherwise HUGE_VAL. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound on each relative error; else, or if a zero may be wrong, HUGE_VAL.
-     * */
+    /* Diagonals, distances, pairs: bound on each relative error; else, or if a 0 may be wrong, infinite. */
     double error_relative;
     double smallest;            /* diagonals and distances: the smallest non-zero value */
-    int64_t n_lost;             /* distances with at most about one sure digit */
+    int64_t n_lost;             /* distances with one sure digit or none */
     int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
@@ -592,8 +586,7 @@ typedef struct hd_spectrum_opts {
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x, read only. The Laplacian must outlive them, without updates.
- * */
+/* The smallest eigenpairs of L x = lambda B x, read only. The Laplacian must outlive them unchanged. */
 typedef struct hd_spectrum {
     int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
@@ -639,7 +632,7 @@ typedef enum hd_query {
 typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are within what the byte limit leaves */
-    double flops;               /* real floating-point operations of factorisations, inversions and solves */
+    double flops;               /* real operations of factorisations, inversions and solves */
     double seconds;             /* on one idle core, up to a factor of about 2 */
     double bytes;               /* at the peak, beyond what the context has in use now */
     /* The same if poles of degree 14 or eigenpairs take over for a better bound. With this much room the
@@ -699,23 +692,21 @@ typedef struct hd_geodesic_report {
     hd_ordering ordering;
     int64_t factor_nnz;
     double factor_flops;
-    /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
+    /* |b - A x| / |b| of (L + B/t) u and of L phi; not the error of the method */
     double residual_heat, residual_distance;
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
-/* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
- * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
- * opts, ctx, report, err, what is freed, and outputs marked "or NULL" may be NULL. Matrices are column-major,
- * with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
+/* Common to all functions. opts, ctx, report, err, what is freed, and outputs marked "or NULL" may be NULL.
+ * Matrices are column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
  * After an error nothing is left allocated, *out and what was to be updated are unchanged, and output arrays
- * hold unspecified numbers. Errors lists those with a place in the input or a special cause. Any function may
- * also return HD_ERR_ARGUMENT (a missing pointer, a negative size, an option out of its range or not
- * cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and HD_ERR_NOT_BUILT. */
+ * hold unspecified numbers. The entry Errors lists those with a place in the input or a special cause. Any
+ * function may also return HD_ERR_ARGUMENT (a missing pointer, a negative size, an option out of its range or
+ * not cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED, HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
-/* Static strings, never NULL. */
+/* Static, never NULL. */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
@@ -761,18 +752,16 @@ HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
  *        value: a coordinate, area or weight beyond 1e100, a non-zero size below 1e-100, an impossible
  *        length, or one that faces disagree on). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
- * Source see hd_laplacian_kind; Delaunay: Bobenko, Springborn 2007; tufted: Sharp, Crane 2020, section 5.7:
- *        points */
+ * Source hd_laplacian_kind; Delaunay: Bobenko, Springborn 2007; tufted: Sharp, Crane 2020, 5.7 for points */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
 /* The pair of the caller's own matrices, copied onto the union of their patterns. An explicit zero stays if
  * its mirror entry is stored too.
- * L      n x n, symmetric positive semi-definite; checked: L_ii >= 0 and L_ij^2 <= L_ii L_jj. Heat is
- *        conserved if its rows sum to zero
+ * L      n x n, symmetric positive semi-definite; checked: L_ii >= 0 and L_ij^2 <= L_ii L_jj
  * B      n x n, symmetric positive definite; checked on the diagonal, by a factorisation unless it is
  *        diagonally dominant, and later by solvers. Rows without non-zeros are inert vertices
- * h      for lap->h; 0 if there is none
+ * h      for lap->h, or 0
  * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if a row's |entries| sum to more than
  *        1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with row,
  *        column, value; HD_ERR_EMPTY
@@ -787,7 +776,8 @@ HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha,
 
 /* New positions for the same faces, of an updatable Laplacian. Plans on lap keep their analysis, and use the
  * new values from the next query on; none may be at work meanwhile. Rows, pattern, held vertices and the
- * faces left out stay; faces that lose their area are counted. All else is as in a new Laplacian.
+ * faces left out stay; faces that lose their area are counted. All else is as in a new Laplacian, to the last
+ * bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
  * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: all its faces have lost their area) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
@@ -804,7 +794,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 /* ---- neighbours of points ---- */
 
 /* The k nearest points of each query point, exactly.
- * index      [k m] ids by distance, then id; -1 beyond n. Points of the set find themselves
+ * index      [k m] ids by distance, then id; -1 beyond n. Points of the set find themselves too
  * distance2  [k m] or NULL: squared distances, infinite beyond n
  * xyz, query [3 n], [3 m] coordinates of at most 1e100; query NULL: all n points, m = n
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
@@ -835,15 +825,13 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* Sets for filters f: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. In distances f is what d^2 sums,
  * for example exp(-2 t lambda), and should not be negative.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ
- *            only in the weights a. max_error is the largest |f - c| on 42,000 points
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max], t = out->t. Several differ only in a
  * filters    [count] degrees rise until tol or max_degree. Several take up to HD_MAX_POLES pairs instead
  * lambda_max that of the Laplacian, or more; 1/area
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
- * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
- * Source     Nakatsukasa, Sete, Trefethen 2018; several functions: Lietaert, Meerbergen, Perez, Vandereycken
- *            2022 */
+ * Cost       milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
+ * Source     Nakatsukasa, Sete, Trefethen 2018; several: Lietaert, Meerbergen, Perez, Vandereycken 2022 */
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
@@ -864,7 +852,7 @@ typedef struct hd_solve_opts {
 
 typedef struct hd_solve_report {
     int64_t iterations;
-    double residual;            /* |b - A x| / |b|, computed from x, in the norm of diag(B)^-1 */
+    double residual;            /* |b - A x| / |b| in the norm of diag(B)^-1 */
     double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if b_ratio is 0 */
 } hd_solve_report;
 
@@ -882,8 +870,8 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 /* ---- direct solver ---- */
 
 /* The factorisation P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for
- * complex-symmetric ones (A = A', never conjugated) with a real part that is definite after a rotation, as t
- * L + theta B. One analysis serves any number of factorisations. Only the first of each kind allocates. */
+ * complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation, such as
+ * t L + theta B. One analysis serves any number of factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -901,9 +889,9 @@ typedef struct hd_ldl_report {
     int32_t n_matrices;         /* in the factor; 0: only analysed */
     int64_t factor_nnz;         /* without padding */
     int64_t stored;             /* the same with padding */
-    double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
-    double growth;              /* largest |pivot| / largest |diagonal entry of A|: lost without pivoting */
-    double smallest_pivot;      /* smallest |pivot|, relative to the same */
+    double factor_flops;        /* of one real factorisation */
+    double growth;              /* largest |pivot| / largest |A_ii|: what is lost without pivoting */
+    double smallest_pivot;      /* smallest |pivot| / largest |A_ii| */
     int32_t n_negative;         /* real: negative pivots, as many as negative eigenvalues */
 } hd_ldl_report;
 
@@ -988,8 +976,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        fields:  HD_ERR_NOT_FINITE (row, column)
  *        pairs:   HD_ERR_INDEX (vertex; row: which pair)
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
- *                 points, vertex): not as hd_sources asks, or sums of weights or lengths outside 1e-100 ..
- *                 1e100
+ *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
+ *                 more than 1e100
  *        method:  HD_ERR_ARGUMENT. Diagonals, traces, samples and distances to all vertices need auto, direct
  *                 or local; distances by commute, biharmonic or a filter need auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
@@ -1000,13 +988,13 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
 
 /* U = K_t F at each time. t = 0 copies F; for large t U tends to the mean over each component. U may be F if
  * there is one time.
- * Source eqs. (8) and (9) of the paper, with the signs given at the top of the file */
+ * Source eqs. (8) and (9) of the paper, with the signs given at the top */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
 /* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass; default degree 14.
- * report bounds are relative to the derivative: infinite where that is 0
+ * report bounds are relative to the derivative: infinite if it is 0
  * Errors HD_ERR_ARGUMENT with a pole set of your own
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
  * one t share factors, and the adjoint is that of the matrix applied, up to rounding. If G is the gradient of
@@ -1015,7 +1003,7 @@ HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const 
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, with the transpose, at each time. The sum of values is kept.
+/* U = K_t' G = B K_t B^-1 G at each time. The sum of values is kept.
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
  * Cost   with a full B about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
@@ -1030,7 +1018,6 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 /* The same as rows of a sparse matrix, without zeros: row q n_times + m for source q at time m.
  * out    cleared, or an earlier answer, which is freed. hd_csr_free takes the plan's context
  * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest
- * Errors HD_ERR_TOO_LARGE: more than 2^31 - 1 rows
  * Cost   with method local no work or memory grows with n after the first call */
 HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                               const double *t, const hd_sources *sources,
@@ -1043,7 +1030,7 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
 /* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
  * the integral 1. For wave filters D/Z are wave kernel signatures. Several filters have a column, a Z and a
- * bound each, looser than that of one.
+ * looser bound each.
  * D      n x n_times, or NULL
  * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
  * bound  [n_times] or NULL: of the absolute error of each Z
@@ -1053,7 +1040,7 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
  *        local: patches that fit the byte limit; half the memory takes up to twice as long. Auto takes
- *        patches where they cost less, or factors of the whole mesh exceed the limit
+ *        patches where they cost less, or where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -1073,9 +1060,8 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
  *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
  *        into several components or such vertices. Where heat is lost they are those of L^-1
- * report bounds are for d itself. The default degree rises to 14 where they need it; at large t the few
- *        eigenpairs left take over, if the byte limit allows. Between the two bounds may exceed 1e-6 above
- *        170,000 vertices
+ * report bounds are for d itself. By default poles of degree 14, or the few eigenpairs left at large t, take
+ *        over where they need it and the byte limit allows. Above 170,000 vertices bounds may exceed 1e-6
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
  *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
  *        its inversion; biharmonic: also those of one pole */
@@ -1124,8 +1110,8 @@ HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
 /* Kernels and distances from the pairs of s, by eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x) x_i(y)
  * and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
- * bound  NULL, or of the output's shape: of the error of each value. Pairs left out add at most exp(-t next)
- *        sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
+ * bound  NULL, or of the output's shape: bounds on errors. Pairs left out add at most
+ *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
  * Cost   2 n count flops for each column; some ten times as many for weighted distances or the diagonal of
  *        K_t with a full B */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
@@ -1142,9 +1128,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 /* What a query would take by each method, without running it.
  * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
- * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. They are an upper
- *          bound for the direct method, by a few percent, and estimates for others; what patches take is not
- *          known
+ * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. They bound the need
+ *          of the direct method within a few percent; for others they are estimates, for patches unknown
  * Errors   HD_ERR_ARGUMENT: diagonals, or distances to all, with method local
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
@@ -1160,8 +1145,7 @@ typedef struct hd_geodesic hd_geodesic;
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
  *        factor and about 430 for each vertex, more for polygons
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; gradients on polygons: Alexa,
- *        Wardetzky 2011 */
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1, section 3.2.1; polygons: Alexa, Wardetzky 2011 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err);
 /* New positions for the same triangles, of an updatable plan.
@@ -1175,18 +1159,17 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
  * sources  as in queries of heat, but weights and lengths are ignored. Points that are no vertices must lie
  *          in a face, its edges and corners included. Plans of polygons take vertices only
- * D        n x count in the unit of xyz: |phi - phi_s|, with the mean phi_s of the source's points weighted
- *          by their heat; zero at vertices that are sources, HUGE_VAL in components without one and at
+ * D        n x count in the unit of xyz: |phi - phi_s|, with the mean phi_s of phi at the source's points,
+ *          weighted by heat; zero at vertices that are sources, HUGE_VAL in components without one and at
  *          vertices without mass. Errors are of the order of h: a few percent on coarse meshes, about one on
- *          fine ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by as much. Around
- *          a source that is no vertex, D is exact at the corners of its faces
+ *          fine ones; d(i, j) and d(j, i) differ by as much. Around a source that is no vertex, D is exact at
+ *          the corners of its faces
  * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
  *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
  *          a report is given
  * Cost     two solves and two passes over the faces for each source; a solve more with several points in a
  *          component, and for every 450 edges or so at t = h^2; two passes more with a report. Eight vertices
- *          together are three times as fast. Calls with vertices alone allocate only if there are more than
- *          before */
+ *          together are three times as fast. Calls with no more vertices than before allocate nothing */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
