@@ -392,6 +392,7 @@ hd_report._fields_ = [
     ('smallest', c_double),
     ('n_lost', c_int64),
     ('n_touched', c_int32),
+    ('n_patches', c_int32),
     ('mass_drift', c_double),
 ]
 
