@@ -501,7 +501,7 @@ def everything():
 KEYS = set("n faces components h area inert laplacian method times threads peak_bytes seconds ordering factor_nnz factor_flops "
            "residual".split())
 HEAT_KEYS = KEYS | set("solver precond poles degree iterations error_bound mass_drift reason growth evidence error_rational "
-                       "error_solver error_rounding error_local touched".split())
+                       "error_solver error_rounding error_local touched patches".split())
 STAGES = ("load", "assemble", "order", "analyse", "factor", "precondition", "invert", "solve", "write")
 
 
@@ -577,11 +577,11 @@ class Case(unittest.TestCase):
             self.assertEqual(set(r["evidence"]), {"rational", "solver", "rounding", "local"})
             self.assertLessEqual(set(r["evidence"].values()), {"none", "proven", "measured", "estimated"})
             self.assertTrue(not r["times"] or [p["t"] for p in r["per_time"]] == r["times"])
-        if r["method"] == "krylov" or r["method"] == "local" and r["command"] != "hks":
+        if r["method"] == "krylov" or r["method"] == "local" and r["command"] in ("kernel", "diffuse", "pairs"):
             self.assertEqual((r["solver"], r["precond"], r["poles"], r["degree"]), ("lanczos", "none", "none", 0))
         if r["command"] in ("distance", "hks", "sample"):
-            self.assertTrue(r["method"] in ("direct", "local")[:1 + (r["command"] == "hks")] and (r["poles"] == "none" or seconds["invert"] > 0)
-                            and 0 < (r["error_bound"] or math.inf) <= (r["error_relative"] or math.inf), r)
+            self.assertTrue(r["method"] in ("direct", "local") and (r["poles"] == "none" or seconds["invert"] > 0)
+                            and (r["method"] == "local") == (r["patches"] > 0) and 0 < (r["error_bound"] or math.inf) <= (r["error_relative"] or math.inf), r)
 
     def text(self, line, *more):
         """What a run tells people, in full: info and --dry-run by their output, all others on standard error."""
@@ -659,7 +659,7 @@ times > 0 :: trace ico.obj --t 0
 read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative}
 no {--t|--degree} :: hks ico.obj --filter heat:1 {1} 4
 no {--method krylov|--method local|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
-no --method local :: hks ico.obj --filter heat:1 --method local
+no --method local :: {hks|distance --source 1|sample --count 2} ico.obj --filter heat:1 --method local
 no --definition :: distance ico.obj --source 1 --filter heat:1 --definition commute
 --filter :: geodesic ico.obj --source 0 --filter heat:1
 --ordering takes no --precond :: kernel ico.obj --source 0 --t 1 --ordering amd --precond ildl
@@ -744,10 +744,11 @@ natural or dirichlet :: info ico.obj --border neumann
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --method iterative --ordering amd
 --ordering takes :: {kernel ico.obj --source 0|diffuse ico.obj --input f.txt} --t 1 --solver minres --ordering dissection
 --t :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2}
---method takes auto or direct :: {distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --method {krylov|iterative|local}
---method takes auto, direct or local :: {hks|trace} ico.obj --t 1 --method {krylov|iterative}
---dry-run takes --method auto or direct :: {hks|trace} ico.obj --t 1 --method local --dry-run
-{--degree|--poles} takes :: {hks|trace} ico.obj --t 1 --method local {1} {7|kernel}
+--method takes auto or direct :: {distance ico.obj --source 0|sample ico.obj --count 2} --definition {commute|biharmonic} \
+    --method {krylov|iterative|local}
+--method takes auto, direct or local :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method {krylov|iterative}
+--dry-run takes --method auto or direct :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method local --dry-run
+{--degree|--poles} takes :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method local {1} {7|kernel}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
 --degree takes :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --degree 1 \
     {--poles kernel|}
@@ -770,7 +771,8 @@ kernel ico.obj --source 0 --t 1 {--ordering amd|--method auto --solver minres|--
 kernel {patch-9.off|ico.obj} --source 0 --t {auto:1,2h2|auto:17}
 diffuse ico.obj --t 1 --input ones-12.txt --degree 1 --method direct
 pairs ico.obj --input p.txt --t 1 --method {krylov|local}
-{hks|hks --kernel operator|hks --normalise|trace} ico.obj --t 1,2 --method local {|--ordering amd}
+{hks|hks --kernel operator|hks --normalise|trace|distance --source 0,1} ico.obj --t 1,2 --method local {|--ordering amd}
+sample ico.obj --count 2 --t 1 --method local {|--definition weighted --source 0,1}
 {sample ico.obj --count 2|geodesic ico.obj --source 0|smooth ico.obj} --t {1|auto:1}
 smooth ico.obj {|--degree 1|-o -|--t 0.1/l1 --method krylov|--method local|--t 0|--tufted --laplacian voronoi-cot|--dry-run}
 {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --poles uniform --degree 1
@@ -1438,6 +1440,12 @@ kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} 
     kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {1} --method iterative --degree 14 --tol 1e-12 :: 1e-7
 {hks --kernel operator|hks --normalise|trace} torus-80-50.obj --t 1h2,2h2 --threads 1 --memory-limit 40M --method local :: \
     {1} torus-80-50.obj --t 1h2,2h2 --method direct :: 1e-6
+distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {classical|weighted} --laplacian {fem|voronoi-cot} \
+    --method local :: distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {1} --laplacian {2} --degree 14 :: 2e-9
+distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition {classical|weighted} --threads 1 --memory-limit 80M \
+    {--method local|} :: distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition {1} --degree 14 :: 2e-9
+sample --count 6 torus-80-50.obj --t 1h2 --source {7|7,3000|9:0.2,0.3} --definition {classical|weighted} --method local :: \
+    sample --count 6 torus-80-50.obj --t 1h2 --source {1} --definition {2} --degree 14 :: 1e-9
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
 |--poles uniform --degree 14} :: hks torus-40-24.obj --t 10h2 --laplacian {1} :: 1e-7
 distance torus-40-24.obj --source 5 --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
@@ -1871,7 +1879,10 @@ kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2
     error_rational=0 error_local>0 error_bound<2e-7
 kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
 {hks|hks --kernel operator|trace} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 80M {|--method local} :: method=local \
-    touched>500 touched<14000 error_local>0 error_relative<1e-6
+    touched>500 touched<14000 patches>1 error_local>0 error_relative<1e-6
+{distance --source 7|distance --source 7 --definition weighted|sample --count 3} torus-150-100.obj --t 1h2 --threads 1 \
+    --memory-limit 80M {|--method local} :: method=local touched>500 touched<14000 patches>1 error_local>0 error_relative<1e-7
+{distance --source 7,3000|sample --count 3} torus-80-50.obj --t 1h2 --method local :: touched=4000 patches=1 degree=14
 kernel torus-80-50.obj --source 1,2 --method iterative --t {30h2 :: times#1|3h2,30h2 :: times#2} mass_drift<1e-9
 {hks|distance --source 1,2|sample --count 3} patch-9.off --t 3h2 :: times#1 n=100 lost=0 error_relative<1e-3 smallest>0
 hks patch-9.off --t 3h2,9h2 :: command=hks times#2 lost=0 error_relative<1e-3 smallest>0
@@ -1928,7 +1939,8 @@ kernel square-12.obj --filter resolvent:10h2 --source 3 -o x.npy :: filter resol
 sample square-12.obj --filter heat:10h2 --count 3 -o x.npy :: filter heat:10h2
 diffuse square-12.obj --filter band:20,80 --input ones-169.txt -o x.npy :: filter band:20,80
 hks square-12.obj --filter heat:10h2 --dry-run :: method direct
-{hks|trace} torus-80-50.obj --t 1h2 --memory-limit 20M --dry-run :: too much\n--method local needs less
+{hks|trace|distance --source 0|sample --count 2} torus-80-50.obj --t 1h2 --memory-limit 20M --dry-run :: too much\n--method local needs less
+distance torus-80-50.obj --source 0 --definition commute --memory-limit 5M --dry-run :: too much\n :: !method local
 info squashed.obj --lengths sides-98.txt :: lengths of edges +sides-98.txt :: !box
 kernel patch-7.obj --lengths sides-98.txt --source 0 --t 1 --size 64x64 -o x.png :: fem Laplacian, from lengths of edges
 hks squashed.obj --lengths sides-98.txt --t 1 --dry-run :: method
@@ -1949,7 +1961,10 @@ kernel ico.obj --source 0 --t 1 :: \A(.+\n){1,8}\Z :: !\r
 kernel ico.obj --source 0 --t 0 -o x.npy :: t = 0
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy --method {direct|krylov} :: (?m)^method {1} \(asked for\)$ :: \
     (?m)^factors: .*non-zeros.*flops :: \A(.+\n){1,8}\Z
-{kernel --source 0|hks --memory-limit 40M --threads 1} torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
+kernel --source 0 torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^parts of at most \d+ of 4000 vertices$ :: factors: :: !conserved
+{hks torus-80-50.obj --memory-limit 40M --threads 1|distance torus-150-100.obj --source 0 --memory-limit 80M --threads 1} --t 1h2 \
+    -o x.npy --method local :: (?m)^\d+ patches, parts of at most \d+ of \d+ vertices$ :: factors: :: !conserved
+sample --count 2 torus-80-50.obj --t 1h2 -o x.npy --method local :: (?m)^1 patch, parts of at most 4000 of 4000 vertices$ :: factors:
 {kernel --source 0|diffuse --input ones-4000.txt|smooth} torus-80-50.obj --t 1h2 --method local --dry-run :: method local \(asked for\) \
     :: (?m)^local +\d+ :: !too much
 kernel torus-80-50.obj --source 0 --t 9h2 -o x.npy {--method iterative :: !factors:|:: (?m)^method \w+ \(.+\)$}
@@ -2146,9 +2161,10 @@ class Limits(Case):
             self.assertRegex(text, r"--method %s needs [0-9.]+ MB[,\n]" % way)
             self.good(run, "--method", way, "--memory-limit", limit)
         os.remove(path("never.npy"))
-        run = "hks torus-80-50.obj --t 1h2 -o never.npy --memory-limit 10M"
-        for method, end in (("direct", "--method local needs less\n"), ("auto", "patches, which need less, do not fit\n"), ("local", "needed, ")):
-            self.bad(1, end, run, "--method", method)
+        for run in ("hks", "distance --source 0", "sample --count 2"):
+            run += " torus-80-50.obj --t 1h2 -o never.npy --memory-limit 10M"
+            for method, end in (("direct", "--method local needs less\n"), ("auto", "--method local needs less\n"), ("local", "needed, ")):
+                self.bad(1, end, run, "--method", method)
         run, ways = "distance torus-80-50.xyz --source 0 --t 3h2", ["--tufted", "--weight-cut 1e-4"]
         d = self.dry(run)
         self.assertEqual(list(d["ways_out"]), ["--tufted"])          # told in any case: it is a small part

@@ -46,6 +46,7 @@ static const fail_case fail_cases[] = {
     {"n_times=3 shared_poles", 0}, {"wave fit", 0}, {"n_filters=2 fit", 0},
     {"k=2 columns_sparse", FAIL_DEPENDS}, {"held border krylov n_times=3 k=2 columns_sparse", 0}, {"local k=2 columns", 0},
     {"held local n_times=3 k=2 columns_sparse", 0}, {"local n_times=2 operator entries", 0}, {"local k=2 f=u apply", 0},
+    {"held local n_times=2 distance", 0}, {"weighted local k=1 distance_from", 0}, {"voronoi local sample", 0},
     {"held border local n_times=3 k=1 derivative", 0}, {"voronoi local columns_from", 0},
     {"updatable local k=1 columns update | columns", FAIL_GOES_ON}, {"local k=100 estimate", FAIL_GOES_ON},
 };

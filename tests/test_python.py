@@ -513,6 +513,9 @@ class Face(unittest.TestCase):
         self.assertTrue(np.array_equal(rows.toarray(), u.transpose(1, 2, 0).reshape(4, -1)) and (rows.data != 0).all() and rows.has_sorted_indices)
         few = hd.Heat(lap, method="local", cut=1e-3).columns_sparse(v, t)
         self.assertTrue(few.nnz < rows.nnz / 2 and abs(few - rows).max() <= 1e-3 * u.max())
+        far, d = hd.Heat(lap, method="direct").distance(v, t), local.distance(v, t)
+        self.assertEqual((d.report.method, d.report.n_touched < lap.n, d.report.n_patches > 1), ("local",) + 2 * (d.report.n_patches > 1,))
+        self.assertLess(abs(d - far).max(), 2e-7 * far.max())
         self.assertEqual((local.columns_sparse([], t).shape, local.columns_sparse(5, t[0], symmetric=True).shape), ((0, lap.n), (1, lap.n)))
 
     def test_errors(self):
@@ -897,7 +900,7 @@ WRONG = {
         ("heat.scale_invariant(1, 2, 9, -1)", "n_freq is -1"), ("heat.scale_invariant([1, 1], 2)", "t0 has shape (2,), wanted is ()"),
         ("heat.scale_invariant(1, np.nan)", "t1 is negative or not finite"), ("heat.scale_invariant(2, 1)", "0 < t0 < t1"), ("heat.wks(0)", "energies is 0"), ("heat.wks([])", "energies are empty"),
         ("heat.wks([np.inf])", "energies are empty or not finite"), ("heat.wks(3, sigma=-1)", "b is not positive"),
-        ("hd.Heat(lap, method='local').distance(0, 1)", "need the direct method"),
+        ("hd.Heat(lap, method='local').distance(0, kind='commute')", "need the direct method"),
         ("hd.Heat(lap, cut=1)", "cut is not in"), ("heat.columns_sparse(25, t)", "not in the mesh"),
         ("hd.Heat(lap, method='krylov').wks(3)", "krylov"), ("hd.Heat(lap, method='iterative').diagonal(1)", "need the direct method"),
         ("heat.distance(0, [], 'commute')", "at least one time"), ("heat.distance(0, [1, 2], 'commute')", "time"),

@@ -95,17 +95,18 @@ static int thr_same(call_world *w, const call_data *d, const char *script, int64
 
 /* Every call, and solvers that a plan would not choose. */
 static void thr_calls(void) {
-    static const char *const more[13] = {"iterative cocg columns", "iterative cocg k=1 apply", "iterative minres columns",
+    static const char *const more[16] = {"iterative cocg columns", "iterative cocg k=1 apply", "iterative minres columns",
                                         "krylov columns", "iterative lanczos columns", "voronoi delaunay triangles",
                                         "weighted distance", "held border pairs", "local n_times=3 columns_sparse",
-                                         "local operator entries", "local columns_from", "local k=1 apply", "local k=1 derivative"};
+                                         "local operator entries", "local columns_from", "local k=1 apply", "local k=1 derivative",
+                                         "local n_times=2 distance", "weighted local distance_from", "local sample"};
     call_data d;
     call_world w;
     char text[80];
     int k, shared = 0;
     memset(&w, 0, sizeof w);
     call_data_make(&d, shape_bumpy(3, 5));
-    for (k = 0; k < N_CALLS + 13; k++) {
+    for (k = 0; k < N_CALLS + 16; k++) {
         snprintf(text, sizeof text, "%s%s", k < N_CALLS ? "direct " : "", k < N_CALLS ? call_table[k].name : more[k - N_CALLS]);
         shared += thr_same(&w, &d, text, 0) > 0;
     }

@@ -877,13 +877,11 @@ static const option_def OPTIONS[] = {
       "residuals relative to eigenvalues (1e-10)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
+    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local",
       "direct: factors of the whole mesh; local: of patches, as small\n"
       "as --memory-limit asks for; auto (default): what costs less, or\n"
       "fits" },
-    { "method", 0, CMD_INVERTS & ~CMD_DIAGONAL, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
-      "auto, direct, krylov, iterative or local", "auto or direct, which are the same here" },
     { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
       "auto, direct, krylov, iterative or local",
       "direct: factors of all poles, for many sources or fields;\n"
@@ -1217,13 +1215,12 @@ static int check_output(const options *o)
 static int check_method(const options *o)
 {
     const char *name = word_of(METHODS, o->method), *iterating = o->solver ? "--solver" : "--precond";
-    const int patches = (o->command & CMD_DIAGONAL) && o->method == HD_METHOD_LOCAL;
+    const int inverts = (o->command & CMD_INVERTS) != 0;
     const int no_poles = o->method == HD_METHOD_KRYLOV || o->method == HD_METHOD_LOCAL;
-    if ((o->command & CMD_INVERTS) && o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT && !patches)
-        return fail(USAGE, "--method takes auto%s direct%s here, not %s: %s is read off the factors",
-                    o->command & CMD_DIAGONAL ? "," : " or", o->command & CMD_DIAGONAL ? " or local" : "", name,
+    if (inverts && (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_KRYLOV))
+        return fail(USAGE, "--method takes auto, direct or local here, not %s: %s is read off factors", name,
                     command_name(o->command));
-    if (patches && o->dry_run)
+    if (inverts && o->method == HD_METHOD_LOCAL && o->dry_run)
         return fail(USAGE, "--dry-run takes --method auto or direct here: what patches take is not known before");
     if (no_poles && (o->degree || o->poles))
         return fail(USAGE, "%s takes no --method %s, which has no use for it",
@@ -1722,6 +1719,7 @@ static void report_merge(hd_report *all, const hd_report *one)
     if (one->evidence_rounding > all->evidence_rounding) all->evidence_rounding = one->evidence_rounding;
     if (one->evidence_local > all->evidence_local) all->evidence_local = one->evidence_local;
     if (one->n_touched > all->n_touched) all->n_touched = one->n_touched;
+    if (one->n_patches > all->n_patches) all->n_patches = one->n_patches;
     if (one->evidence_b > all->evidence_b) all->evidence_b = one->evidence_b;
     keep_larger(&all->error_bound_b, one->error_bound_b);
     keep_larger(&all->error_bound, one->error_bound);
@@ -2703,8 +2701,11 @@ static void find_ways(run *r)
     if (has_exponentials(r) && r->o->weight_cut < WIDER_CUT) try_options(r, &o, "--weight-cut 1e-4");
 }
 
-/* Can diagonals go on patch by patch where factors of the whole mesh do not fit? */
-static int by_patches(const options *o) { return (o->command & CMD_DIAGONAL) && !o->filter; }
+/* Can a run go on patch by patch where factors of the whole mesh do not fit? */
+static int by_patches(const options *o)
+{
+    return (o->command & CMD_INVERTS) && !o->filter && !is_timeless(o) && o->method != HD_METHOD_LOCAL;
+}
 
 /* A run that does not fit the memory: what it needs, what is allowed, and what would fit. */
 static int fail_limit(run *r, const hd_error *e)
@@ -2723,9 +2724,7 @@ static int fail_limit(run *r, const hd_error *e)
     for (i = 0; i < r->n_ways; i++)
         snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "%s%s needs %.1f MB%s", i ? ", " : "; ",
                  r->ways[i].option, 1e-6 * r->ways[i].bytes, r->ways[i].bytes > allowed ? " (too much)" : "");
-    if (by_patches(r->o))
-        snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "; %s",
-                 r->o->method == HD_METHOD_DIRECT ? "--method local needs less" : "patches, which need less, do not fit");
+    if (by_patches(r->o)) snprintf(ways + strlen(ways), sizeof ways - strlen(ways), "; --method local needs less");
     return fail(FAILED, "%s: %.1f MB are needed, and %.1f MB are allowed (--memory-limit, by default nine "
                 "tenths of the machine's memory)%s", r->mesh_name, 1e-6 * needed, 1e-6 * allowed, ways);
 }
@@ -3358,14 +3357,15 @@ static void json_laplacian(json *j, const hd_laplacian *lap)
     if (lap->points.neighbours) json_points(j, &lap->points);
 }
 
-/* Fill, flops and growth of the factorisations, and the most vertices that one of local had; zeros if there are
- * none. */
+/* Fill, flops and growth of the factorisations, and of local the most vertices that one had, and patches; zeros
+ * if there are none. */
 static void json_factor(json *j, const hd_report *p)
 {
     json_integer(j, "factor_nnz", p->factor_nnz);
     json_number(j, "factor_flops", p->factor_flops);
     json_number(j, "growth", p->growth);
     json_integer(j, "touched", p->n_touched);
+    json_integer(j, "patches", p->n_patches);
 }
 
 static const char *const EVIDENCE[] = {"none", "proven", "measured", "estimated"};    /* by hd_evidence */
@@ -3491,6 +3491,7 @@ static void print_method(const run *r)
     const hd_report *w = &r->sum.worst;
     const double rows = w->n_touched > 0 ? w->n_touched : r->lap->n_active;
     fprintf(stderr, "method %s (%s)\n", method_text(&r->sum), reason_text(&r->sum));
+    if (w->n_patches > 0) fprintf(stderr, "%ld patch%s, ", (long)w->n_patches, w->n_patches > 1 ? "es" : "");
     if (w->n_touched > 0)
         fprintf(stderr, "parts of at most %ld of %ld vertices\n", (long)w->n_touched, (long)r->lap->n_active);
     if (w->factor_nnz > 0)
@@ -3706,7 +3707,7 @@ static void print_estimate(const run *r)
             1e-6 * e->bytes_in_use);
     if (r->context.byte_limit) printf("; allowed %.1f MB", 1e-6 * (double)r->context.byte_limit);
     printf(c->fits ? "\n" : ": too much\n");
-    if (!c->fits && by_patches(r->o)) printf("--method local needs less; auto goes on by it\n");
+    if (!c->fits && by_patches(r->o)) printf("--method local needs less; auto goes on by it on large meshes\n");
     if (c->bytes_most > c->bytes)
         printf("with poles of degree 14, if they are needed, %.1f MB\n",
                 1e-6 * (e->bytes_in_use + c->bytes_most));

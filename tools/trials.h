@@ -582,11 +582,6 @@ static const char *const trial_fields[] = {"random", "smooth",    "nearly", "hug
                                           "delta",  "alternate", "mode",   "constant", "step",
                                           "linear", "zero",      "level",  NULL};
 
-/* Is there a method local for the query? */
-static int trial_local(int query) {
-    return query <= QUERY_FROM || query == QUERY_ENTRIES;
-}
-
 typedef struct trial {
     char shape[32], op[16];
     double scale, t, th, span, tol, own_x;       /* th > 0: t in units of the shape's own */

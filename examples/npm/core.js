@@ -59,9 +59,11 @@ const REPORT_FACTS = [
   "rational",
   "solver",
   "rounding",
+  "local",
   "evidenceRational",
   "evidenceSolver",
   "evidenceRounding",
+  "evidenceLocal",
   "boundRelative",
   "lost",
   "smallest",
@@ -72,6 +74,7 @@ const REPORT_FACTS = [
   "iterations",
   "factorNonZeros",
   "factorFlops",
+  "touched",
 ];
 const GEODESIC_FACTS = ["t", "h", "residualHeat", "residualDistance", "stages", "factorNonZeros"];
 const ESTIMATE_FACTS = ["method", "fits", "seconds", "bytes", "bytesMost", "flops", "analysed"];
@@ -303,9 +306,9 @@ export class Answer {
 
 function report(it, status) {
   const all = named(REPORT_FACTS, facts(it)),
-    word = (name) => (all[name] = WORDS.hd_evidence[all[name]]);
-  const worst = Math.max(all.evidenceRational, all.evidenceSolver, all.evidenceRounding);
-  ["evidenceRational", "evidenceSolver", "evidenceRounding"].forEach(word);
+    parts = ["evidenceRational", "evidenceSolver", "evidenceRounding", "evidenceLocal"],
+    worst = Math.max(...parts.map((name) => all[name]));
+  for (const name of parts) all[name] = WORDS.hd_evidence[all[name]];
   return {
     ...all,
     status: it.text(it.wasm.module_status_name(status)),

@@ -77,16 +77,19 @@ export interface SurfaceInfo {
 /** How an answer was computed, and how large its error can be. The worst of its columns. */
 export interface Report {
   status: "HD_OK" | "HD_WARN_ACCURACY";
-  /** Bound on the largest error of any value, relative to the largest value; the sum of the next three. */
+  /** Bound on the largest error of any value, relative to the largest value; the sum of the next four. */
   bound: number;
   rational: number;
   solver: number;
   rounding: number;
+  /** What method local leaves out. */
+  local: number;
   /** How the least certain part of the bound is known. */
   evidence: Evidence;
   evidenceRational: Evidence;
   evidenceSolver: Evidence;
   evidenceRounding: Evidence;
+  evidenceLocal: Evidence;
   /** Signatures and distances: bound relative to each value itself; else Infinity. */
   boundRelative: number;
   /** Distances with at most about one sure digit. */
@@ -100,6 +103,8 @@ export interface Report {
   iterations: number;
   factorNonZeros: number;
   factorFlops: number;
+  /** Vertices of the largest part of the mesh that method local worked on. */
+  touched: number;
 }
 
 /** Geodesic distances come from the heat method, whose own error is about `error`, an edge length: there is no bound. */

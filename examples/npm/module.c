@@ -172,9 +172,10 @@ static hd_heat *plan(module_surface *s, int32_t method) {
 
 static hd_status end(const hd_report *r) {
     const double facts[] = {
-        r->error_bound, r->error_rational, r->error_solver, r->error_rounding, r->evidence_rational, r->evidence_solver,
-        r->evidence_rounding, r->error_relative, (double)r->n_lost, r->smallest, r->mass_drift, r->residual, r->method,
-        r->degree, (double)r->iterations, (double)r->factor_nnz, r->factor_flops};
+        r->error_bound, r->error_rational, r->error_solver, r->error_rounding, r->error_local, r->evidence_rational,
+        r->evidence_solver, r->evidence_rounding, r->evidence_local, r->error_relative, (double)r->n_lost, r->smallest,
+        r->mass_drift, r->residual, r->method, r->degree, (double)r->iterations, (double)r->factor_nnz, r->factor_flops,
+        r->n_touched};
     if (r->status < 0) return fail(&r->error);
     memcpy(last.facts, facts, sizeof facts);
     last.text = r->reason;

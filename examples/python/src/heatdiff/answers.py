@@ -21,7 +21,8 @@ class Report:
     error_relative: bound relative to each value itself (signatures, distances, pairs); infinite if there is none.
     n_lost: distances with at most about one sure digit. smallest: the smallest value that is not zero.
     mass_drift: how much of the heat was lost or gained. residual: of the linear systems.
-    n_touched: vertices of the largest part of the mesh that method local worked on.
+    n_touched: vertices of the largest part of the mesh that method local worked on. n_patches: into how many pieces it cut
+    the mesh for signatures and distances.
     factor_nnz, factor_flops: size of the factors, and operations of the factorisations. status: 'HD_OK' or
     'HD_WARN_ACCURACY'."""
     status: str
@@ -43,6 +44,7 @@ class Report:
     error_relative: float
     n_lost: int
     n_touched: int
+    n_patches: int
     smallest: float
     mass_drift: float
     residual: float

@@ -68,8 +68,8 @@ class Heat(Object):
 
     lap             the Laplacian
     method          'auto', 'direct' (many columns; signatures, distances), 'krylov' (few columns, many times), 'iterative',
-                    'local' (small t: columns and fields on the part of the mesh that heat reaches; signatures, traces by
-                    patches, within memory_limit)
+                    'local' (small t: columns and fields on the part of the mesh that heat reaches; signatures, traces and
+                    distances by patches, within memory_limit)
     solver          of iterations: 'auto', 'cocg', 'minres', 'lanczos'
     precond         of iterations: 'auto', 'none', 'jacobi', 'ssor', 'ildl', 'mildl'
     poles           'default', 'uniform', 'kernel'; training: 'kernel' and a degree
