@@ -1090,8 +1090,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err);
 
 /* Single entries (i, j) of K_t or k_t. The bound may say nothing about small ones.
- * Cost   one column for each distinct j, with n doubles of memory at a time. Method local or auto, 256 vertices
- *        or more, all with i = j: the diagonal on patches around them */
+ * Cost   one column for each distinct j, with n doubles of memory at a time. Method local or auto, and 256
+ *        vertices or more with i = j: the diagonal on patches around them */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
