@@ -19647,7 +19647,8 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
  * poles, of which the highest degree takes over where the error of the default is too large. */
 static int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
-    if (most > 0 && !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
+    if (HDI_HAS_MODES && most > 0 &&
+        !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
     hdi_task_at(h, q);
     task->excess = 0;
     (void)(most > 0 ? task->pairs : task->poles)(task);
@@ -21486,7 +21487,7 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
 }
 
 /* Can patches serve? */
-static int hdi_patches_can(const hd_heat *heat) {
+static HDI_INLINE int hdi_patches_can(const hd_heat *heat) {
     const int32_t n = heat->source->n_active, asked = heat->opts.method == HD_METHOD_LOCAL;
     return HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
            (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
@@ -21524,11 +21525,12 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
 static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
                                   const int32_t *j, double *values) {
     const hd_laplacian *lap = h->heat->source;
-    int may = HDI_HAS_DIAGONAL && n >= HDI_PATCH_LEAST && hdi_patches_can(h->heat);
+    int may = n >= HDI_PATCH_LEAST;
     int32_t *rows, q, v;
     hdi_diagonals to;
     hdi_patches x;
     int64_t p;
+    if (!HDI_HAS_DIAGONAL || !hdi_patches_can(h->heat)) return 0;
     for (p = 0; p < n && may; p++) may = i[p] == j[p];
     for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
     if (!may) return 0;
