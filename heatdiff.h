@@ -4,8 +4,7 @@
 
    A surface is a pair of sparse symmetric matrices: the stiffness matrix L, positive semi-definite, and the
    mass matrix B, positive definite. Heat f diffuses as K_t f with the kernel K_t = exp(-t B^-1 L). This file
-   builds (L, B) from a mesh or from points, and applies K_t through a rational approximation of the
-   exponential,
+   builds (L, B) from a mesh or points, and applies K_t by a rational approximation of the exponential,
 
        K_t f = a0 f - sum_i a_i (t L + theta_i B)^-1 B f,
 
@@ -18,7 +17,7 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. The implementation compiles in about 12 s at -O2: give it a file of its own.
+   and link with -lm. The implementation compiles in about 12 s: give it a file of its own.
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -30,15 +29,14 @@
    Conventions
      sign     L is minus the usual cotangent matrix of libigl. Its rows sum to zero.
      units    L has no unit. B is an area, and so is t (length squared). If B = I (kind cot), t is a number.
-     t        usually c h^2, where h = lap->h is the mean edge length. Below h^2 heat sees the mesh rather
-              than the surface.
+     t        usually c h^2, h = lap->h the mean edge length. Below h^2 heat sees the mesh, not the surface.
      kernels  K_t is not symmetric: its column i diffuses the indicator of vertex i, whose heat is the mass
               b_i. The pointwise kernel k_t = K_t B^-1, unit 1/area, is symmetric: its column i diffuses one
               unit of heat at vertex i.
-     border   natural (Neumann): no heat leaves. On request the border, or any vertices, are held at zero
-              (Dirichlet), and heat leaves there.
+     border   natural (Neumann): no heat leaves. The border, or any vertices, can be held at zero (Dirichlet);
+              heat leaves there.
      mass     Vertices without mass (in no face, or only in faces of zero area) are inert: their row and
-              column of K_t are those of the identity, those of k_t are zero. Of held vertices both are zero.
+              column are those of the identity in K_t, and zero in k_t. Held vertices have zeros in both.
      norm     |f|_B = sqrt(f' B f).
 
    Contents
@@ -64,54 +62,48 @@
    Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
      HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
-     HEATDIFF_AUDIT            slow asserts as well; set by itself under the address sanitizer
+     HEATDIFF_AUDIT            slow asserts as well; on under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
-                               used by contexts without an allocator; define both or none
-     HEATDIFF_FILENAME         "name" of this file, which includes itself: only if you renamed it and the
-                               compiler has no __FILE_NAME__
-     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large fronts of real factors, where
-                               neither AVX2 nor AVX-512 serves
+                               for contexts without an allocator; define both or none
+     HEATDIFF_FILENAME         "name" of this file, if you renamed it and the compiler has no __FILE_NAME__
+     HEATDIFF_USE_BLAS         dgemm of a BLAS (32-bit integers) for large real fronts without AVX2
      HEATDIFF_NO_SIMD          plain C: no kernels for AVX2, AVX-512 and NEON
-     HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, and without the atomic
-                               operations of GCC, Clang or MSVC
+     HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, or without atomics
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More of them make the build smaller, where -ffunction-sections -Wl,--gc-sections does not drop enough. What
-   is left out returns HD_ERR_NOT_BUILT, with the macro's name. HD_METHOD_AUTO chooses among what is there.
-     HEATDIFF_NO_DIRECT        all factorisations: hd_ldl_*, method krylov; implies NO_LOCAL,
-                               NO_POLE_FACTORS, NO_GEODESIC, NO_SPECTRUM. b_ratio of the caller's matrices
-                               comes from Gershgorin's circles alone
-     HEATDIFF_NO_LOCAL         method local. Diagonals beyond byte_limit are an error
+   More of them make the build smaller. What is left out returns HD_ERR_NOT_BUILT, and HD_METHOD_AUTO chooses
+   among the rest; some error bounds are larger then, and what exceeds byte_limit may be an error.
+     HEATDIFF_NO_DIRECT        factorisations: hd_ldl_*, method krylov; implies NO_LOCAL, NO_POLE_FACTORS,
+                               NO_GEODESIC, NO_SPECTRUM
+     HEATDIFF_NO_LOCAL         method local
      HEATDIFF_NO_POLE_FACTORS  complex factors: method direct, hd_ldl_*_complex; implies NO_DIAGONAL
-     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION.
-                               Error bounds of method direct are larger
+     HEATDIFF_NO_DIAGONAL      selected inversion: hd_heat_diagonal, hd_ldl_inverse*; implies NO_DIFFUSION
      HEATDIFF_NO_DIFFUSION     hd_heat_distance, hd_heat_distance_pairs, hd_heat_sample
-     HEATDIFF_NO_SPECTRUM      hd_spectrum_*. Bounds of distances at large t, and of all answers where heat
-                               flows out, are larger
-     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve. Factors beyond byte_limit are an error
+     HEATDIFF_NO_SPECTRUM      hd_spectrum_*
+     HEATDIFF_NO_ITERATIVE     method iterative, hd_shifted_solve
      HEATDIFF_NO_GEODESIC      hd_geodesic_*
      HEATDIFF_NO_INTRINSIC     the triangulations Delaunay and tufted
      HEATDIFF_NO_POINTS        HD_POINTS, hd_neighbours_*
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
-   Macros wherever the file is included, the same everywhere; none changes a public type or prototype
+   Macros wherever the file is included, the same everywhere
      HEATDIFF_STATIC           all functions are static, for a single file that uses them
      HEATDIFF_API              your own linkage attribute
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
-     no file and never exits. With x87 registers (32-bit x86 without -msse2 -mfpmath=sse) or -ffast-math
-     neither bits nor bounds near rounding are promised.
+     no file and never exits. Neither bits nor bounds near rounding are promised with -ffast-math or x87
+     registers (32-bit x86 without -msse2 -mfpmath=sse).
 
    Threads
      There is no global or thread-local state. An object or a context serves one thread at a time. Only a
      Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each.
-     The library's own threads belong to a context. They start with its first long work, sleep between calls,
-     and end with the last object made with it. Results are the same to the last bit for any number of them.
-     If each of your threads has a plan, set hd_context.n_threads = 1.
-     A forked child may use and free the objects of its parent. Do not fork while another thread is inside
-     the library. With glibc older than 2.34 link with -lpthread, otherwise programs run on one thread. On
-     Windows the implementation includes windows.h.
+     A context's own threads run from its first long work to the end of its last object, and sleep between
+     calls. Results are the same to the last bit for any number of them. If each of your threads has a plan,
+     set hd_context.n_threads = 1.
+     A forked child may use and free its parent's objects. Do not fork while another thread is in the library.
+     With glibc older than 2.34 link with -lpthread, or all runs on one thread. On Windows the implementation
+     includes windows.h.
 
    Licence: MIT or public domain, at your choice; see the end of the file. */
 
@@ -144,7 +136,7 @@
 extern "C" {
 #endif
 
-/* A complex number. Same layout as C99 double complex and std::complex<double>. */
+/* A complex number, laid out as C99 double complex and std::complex<double>. */
 typedef struct hd_c64 { double re, im; } hd_c64;
 
 /* Negative is an error, positive means "usable, but read the report". */
@@ -181,16 +173,14 @@ typedef struct hd_error {
     int64_t face, vertex;  /* ids as the caller numbers them */
     int64_t row, column;   /* of a matrix or field, or as a function says */
     int64_t pole;          /* index in the rational set, or of the matrix in a complex factorisation */
-    /* The offending value, or 0. HD_ERR_MEMORY_LIMIT: a byte_limit (or allocation_limit, if the text says so)
-     * must be at least this. */
-    double value;
+    double value;          /* the offending one, or 0. HD_ERR_MEMORY_LIMIT: the limit must be at least this */
 } hd_error;
 
-/* What a progress callback returns. Any other value, such as 0 or 1, is HD_ERR_ARGUMENT. */
+/* What a progress callback returns. Any other value is HD_ERR_ARGUMENT. */
 typedef enum hd_progress { HD_PROGRESS_CONTINUE = 0x100, HD_PROGRESS_CANCEL = 0x200 } hd_progress;
 
-/* Called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL, which ends a call
- * with HD_ERR_MEMORY. free receives the size that was asked for. Stacks of threads do not come from here. */
+/* Called from the calling thread only. alloc returns blocks aligned to 8 bytes, or NULL: HD_ERR_MEMORY. free
+ * receives the size asked for. Stacks of threads do not come from here. */
 typedef struct hd_allocator {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block, size_t size);
@@ -200,22 +190,20 @@ typedef struct hd_allocator {
 /* One task of a parallel loop. worker numbers the threads; 0 is the calling one. */
 typedef void (*hd_task)(void *arg, int64_t index, int32_t worker);
 
-/* Instruction sets of the dense kernels on x86-64 with GCC and Clang; default: the processor's best. AArch64
- * has NEON, others plain C. Results of two sets agree up to rounding. */
+/* Instruction sets of x86-64 with GCC and Clang; default: the best. Results agree up to rounding. */
 typedef enum hd_simd { HD_SIMD_AUTO = 0, HD_SIMD_NONE, HD_SIMD_AVX2, HD_SIMD_AVX512 } hd_simd;
 
 typedef struct hd_threads hd_threads;            /* started and ended by the library */
 
 /* Memory, progress and threads. All zeros are defaults, as is NULL. A context must outlive every object made
- * with it, and must not be copied in the meantime. */
+ * with it, and must not be copied meanwhile. */
 typedef struct hd_context {
     hd_allocator allocator;     /* both functions or none */
-    /* most bytes in use at one time; 0: no limit. Where one way would exceed it, others are tried */
-    uint64_t byte_limit;
+    uint64_t byte_limit;        /* most bytes in use; 0: no limit. Ways that need more are avoided */
     uint64_t allocation_limit;  /* most calls of alloc; 0: no limit */
 
-    /* Called now and then during long work, by the calling thread. If it cancels, the running function ends
-     * with HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges",
+    /* Called now and then in long work, by the calling thread. HD_PROGRESS_CANCEL ends the function with
+     * HD_ERR_CANCELLED. done runs from 0 to 1 within a stage: "neighbours", "assemble", "flip edges",
      * "order", "analyse", "factor", "invert" (selected inversion), "precondition", "solve", "sample". */
     hd_progress (*progress)(void *user, const char *stage, double done);
     void *progress_user;
@@ -224,16 +212,14 @@ typedef struct hd_context {
      * None waits for another. NULL: the library's own threads. */
     void (*parallel_for)(void *user, int64_t n_tasks, hd_task task, void *arg);
     void *parallel_user;
-    /* The calling one included; 0: one for each processor that the process may use. Ignored if parallel_for
-     * is set. */
-    int32_t n_threads;
+    int32_t n_threads;          /* calling one included; 0: as many as processors; unused with parallel_for */
     hd_simd simd;
 
     /* Filled by the library. */
     uint64_t bytes_in_use, bytes_peak, allocations;
     uint64_t regions;           /* parallel loops shared with other threads */
     uint64_t helped;            /* tasks that other threads did */
-    uint64_t waits;             /* times that the calling thread slept until others were done */
+    uint64_t waits;             /* of the calling thread for others */
     hd_threads *threads;        /* running; NULL: none; not counted in bytes_in_use */
     int32_t n_holders;          /* objects made with this context */
 } hd_context;
@@ -241,8 +227,7 @@ typedef struct hd_context {
 /* How many threads work for this context. */
 HEATDIFF_API int32_t hd_context_threads(const hd_context *ctx);
 
-/* A sparse matrix by compressed rows, whose columns ascend and occur once. Matrices made by the library are
- * freed with hd_csr_free. */
+/* A sparse matrix by compressed rows; columns ascend and occur once. hd_csr_free frees the library's. */
 typedef struct hd_csr {
     int32_t n_rows, n_cols;
     int64_t nnz;
@@ -252,17 +237,17 @@ typedef struct hd_csr {
 } hd_csr;
 
 /* ==== [C] options and reports ==== */
-/* A zero in options means the default, and so does a NULL pointer to them. Clear a struct before you fill it
- * in: begin_zero and end_zero must be zero, as a sign of that.
+/* A zero in options is the default, as is a NULL pointer to them. Clear a struct before you fill it in:
+ * begin_zero and end_zero must be zero.
  * context       default: the Laplacian's, if there is one
- * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere. If it is
- *               no permutation, the error is HD_ERR_INDEX (row)
+ * perm          [n] HD_ORDERING_OWN: vertices in order of elimination, those without mass anywhere.
+ *               HD_ERR_INDEX (row): it is no permutation
  * factor_nnz    non-zeros of one factor L, diagonal included; 0 without a factorisation
  * factor_flops  real floating-point operations of all factorisations */
 
 /* Points: E_ij = exp(-|p_i - p_j|^2 / 4s) / (4 pi s^2) with the bandwidth s, and v_i is the area of the
  * Voronoi cell of point i in its tangent plane. For exp B^-1 L tends to Laplacian/area if points are evenly
- * spread: the unit of t is an area times a squared length. */
+ * spread, and the unit of t is length^4. */
 typedef enum hd_laplacian_kind {
     HD_LAPLACIAN_DEFAULT = 0,   /* triangles: fem, polygons: polygon, points: voronoi-exp */
     HD_LAPLACIAN_FEM,           /* cotangent L; B: a triangle adds area/6 on, area/12 off the diagonal */
@@ -288,8 +273,7 @@ typedef enum hd_triangulation {
     /* Meshes: edges are flipped along the surface. Cotangent weights are negative only on boundary edges
      * opposite an obtuse angle. Surfaces not manifold, or not oriented alike, are covered twice. */
     HD_TRIANGULATION_DELAUNAY,
-    /* Meshes: the same on two sheets, glued at the boundary; no weight is negative. Points: triangles are
-     * made from neighbours. */
+    /* Meshes: the same on two glued sheets; no weight is negative. Points: triangles from neighbours. */
     HD_TRIANGULATION_TUFTED
 } hd_triangulation;
 
@@ -303,11 +287,10 @@ typedef struct hd_laplacian_opts {
     double bandwidth2;          /* s of exponential weights; default: see hd_laplacian_create */
     double weight_cut;          /* exponentials below this are left out; default 1e-8, below 1 */
     /* Delaunay and tufted: all edges grow by one length, until triangle inequalities have a margin of mollify
-     * times the mean edge length. Default 1e-5, at most 1; negative: not at all. */
+     * mean edge lengths. Default 1e-5, at most 1; negative: not at all. */
     double mollify;
     int32_t neighbours;         /* points: nearest ones for the plane and cell or star, 6..128; default 30 */
-    /* 1: allows updates (triangles and polygons in space, as given; matrices). Takes 90 bytes for each
-     * triangle, or 65 for each corner of polygons. */
+    /* 1: allows updates (triangles and polygons in space, as given; matrices); 90 bytes for each triangle */
     int32_t updatable;
     hd_border border;           /* of meshes; points and matrices: use held */
     int32_t n_held;
@@ -317,9 +300,8 @@ typedef struct hd_laplacian_opts {
 
 typedef enum hd_shape { HD_TRIANGLES = 0, HD_POLYGONS, HD_POINTS } hd_shape;
 
-/* The caller's surface. No array is used after the call.
- * NOTE: vertex buffers often repeat vertices along seams of texture coordinates or normals, which no heat
- * crosses. Weld them first. */
+/* The caller's surface. No array is used after the call. NOTE: heat does not cross seams where vertices are
+ * repeated, as vertex buffers often do for textures. Weld them first. */
 typedef struct hd_mesh {
     int32_t begin_zero;
     hd_shape shape;
@@ -328,15 +310,14 @@ typedef struct hd_mesh {
     const float *xyz_float;     /* or this */
     size_t stride;              /* bytes from one vertex to the next; 0: packed */
     /* [3 n_faces] of triangles, in place of coordinates: lengths[3 f + q] is the side from corner q to the
-     * next, no longer than the other two together. All faces at an edge agree up to 1e-12 of it; two vertices
-     * have one edge only. */
+     * next. Faces at an edge agree up to 1e-12; two vertices have one edge only. */
     const double *lengths;
     int32_t n_faces;
     const int64_t *face_ptr;    /* [n_faces + 1] of polygons: where the corners of each begin, from 0 */
     const int32_t *corner;      /* vertex ids: three for each triangle, or by face_ptr */
     const uint16_t *corner_u16; /* or this, of triangles */
     /* Tufted points: nbr[nbr_ptr[i]] .. nbr[nbr_ptr[i + 1] - 1] are neighbours of point i, at most 256; 30
-     * nearest ones suit. The point itself, points at its place and repeats do no harm. NULL: searched. */
+     * nearest ones suit. Point i itself and repeats do no harm. NULL: searched. */
     const int64_t *nbr_ptr;
     const int32_t *nbr;
     int32_t end_zero;
@@ -346,17 +327,14 @@ typedef struct hd_mesh {
 typedef struct hd_mesh_report {
     int32_t n_faces, n_faces_used;   /* given; assembled */
     int32_t n_repeated_corner;       /* left out: two corners are the same vertex */
-    /* Left out: the area is exactly zero (more than three corners: up to rounding), or there are fewer than
-     * three corners. */
-    int32_t n_zero_area;
+    int32_t n_zero_area;             /* left out: zero area (polygons: up to rounding), or < 3 corners */
     int32_t n_repeated_face;         /* left out: corners of an earlier face, for polygons in cyclic order */
     int64_t n_edges, n_boundary_edges;   /* of the faces used; those with one face */
     int64_t n_nonmanifold_edges;     /* with three faces or more, whose weights are summed */
-    int64_t n_misoriented_edges;     /* with two faces that run along them in the same direction */
+    int64_t n_misoriented_edges;     /* with two faces of opposite orientation */
     int32_t n_boundary_loops;        /* connected sets of boundary edges */
     int32_t n_inert;                 /* vertices without mass, held or not */
-    /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. Most
-     * faces of more than three corners have some. */
+    /* Edges of negative weight (polygons: positive entries of L), which break the maximum principle. */
     int64_t n_negative_weights;
     double smallest_angle;           /* in radians, of the faces used; polygons: of convex corners */
 
@@ -380,39 +358,32 @@ typedef struct hd_point_report {
     int32_t n_no_area;               /* points whose neighbours lie on a line: inert for voronoi-exp */
     int32_t n_border;                /* places whose cell ends at the hull of their neighbours */
     int32_t most_in_row;             /* most non-zeros in a row of L */
-    /* Places whose neighbours spread across their plane over 0.45 times as far as along it: creases, rims,
-     * tips, noise, and sheets closer than about 1.5 spacings, where heat may cross over. */
+    /* Places whose neighbours do not lie near a plane: creases, rims, tips, noise, and sheets closer than
+     * about 1.5 spacings, where heat may cross over. */
     int32_t n_not_flat;
 } hd_point_report;
 
-/* The pair (L, B) on one pattern, to be read only. Rows are the vertices with mass that are not held at zero,
- * in the caller's order. */
+/* The pair (L, B) on one pattern, read only. Rows: vertices with mass and not held, in the caller's order. */
 typedef struct hd_laplacian {
     int32_t n, n_active;        /* vertices of the caller; rows */
     int32_t n_held;
     int32_t n_components;       /* of the rows, joined by entries of L or B that are not zero */
     hd_laplacian_kind kind;
-    /* A bound on the largest eigenvalue of B^-1 L in 1/area, up to about five times as large. HUGE_VAL if
-     * b_ratio is 0. */
-    double lambda_max;
+    double lambda_max;          /* bound on the eigenvalues of B^-1 L, 1/area; HUGE_VAL if b_ratio is 0 */
     double h;                   /* mean edge length before flips; points: nearest places; matrices: given */
     double area;                /* of the faces used, or of points' cells or stars; matrices: 1'B1 */
     hd_csr L;                   /* n_active x n_active, every diagonal entry present */
     double *B;                  /* [L.nnz] B on the pattern of L; NULL: B = diag(mass) */
-    /* [n_active] b = B 1. Next to held vertices a full B has lost entries: the heat there is b'u with the b
-     * of the Laplacian that holds none. */
+    /* [n_active] b = B 1. Next to held vertices a full B has lost entries: heat there is b'u with the b of
+     * the Laplacian that holds none. */
     double *mass;
     double *b_diag;             /* [n_active] diagonal of B; the array mass if B is diagonal */
     int32_t *vertex, *row;      /* [n_active] row -> vertex; [n] vertex -> row, HD_ROW_INERT or HD_ROW_HELD */
     int32_t *component;         /* [n_active] row -> component, numbered by first vertices */
     double *xyz;                /* [3 n_active] coordinates of the rows; NULL for matrices and lengths */
     double *component_mass;     /* [n_components] infinite where heat is lost to held vertices */
-    /* B >= b_ratio diag(B), proven: 1 if B is diagonal, 1/2 for fem (0.42 if some edge joins a vertex to
-     * itself). 0: unknown. */
-    double b_ratio;
-    /* Where heat is conserved: L 1 = 0, for matrices up to 4 DBL_EPSILON sum_j |L_ij| in each row. 1:
-     * everywhere; 2: on some components; 0: on none, or unknown. */
-    int32_t conserves;
+    double b_ratio;             /* proven B >= b_ratio diag(B): 1 if diagonal, <= 1/2 if fem; 0: unknown */
+    int32_t conserves;          /* where L 1 = 0: 1 everywhere, 2 on some components, 0 on none or unknown */
     hd_mesh_report mesh;        /* matrices, points: only n_inert; tufted points: triangles of stars */
     hd_point_report points;     /* tufted: only n_not_flat and, if searched, neighbours and n_coincident */
     hd_context *context;
@@ -467,31 +438,29 @@ typedef struct hd_filter {
     double (*f)(double lambda, void *user);   /* HD_FILTER_OWN: finite on [0, lambda_max] */
     void *user;
     double tol;                 /* max (1 + weight lambda) |f - c| / max |f|; default 1e-10 */
-    /* >= 0. Take 1/weight near the eigenvalues that f lets pass. For a wave, exp(-a) and tol = 1e-7 give
-     * bounds near 1e-6 with 16 poles. */
+    /* >= 0. Take 1/weight near the eigenvalues that f lets pass; for a wave exp(-a) and tol = 1e-7. */
     double weight;
     int32_t max_degree;         /* at most HD_MAX_POLES; default 24 */
-    /* > 0: no eigenvalue lies between 0 and this, and c may take any value there. The second value of
-     * hd_spectrum is such a number. It halves the poles of filters that are not smooth at 0. */
+    /* > 0: no eigenvalue lies between 0 and this, such as hd_spectrum's second value, and c is free there. It
+     * halves the poles of filters that are not smooth at 0. */
     double lambda_min;
     int32_t constant;           /* 1: c may have an a0, for filters that do not fade at large lambda */
     int32_t end_zero;
 } hd_filter;
 
 typedef enum hd_method {
-    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, ask for direct,
-     * which keeps its factors. */
+    /* The cheapest by a model, within the byte limit. For many calls of one column at one t, use direct. */
     HD_METHOD_AUTO = 0,
     HD_METHOD_ITERATIVE,        /* a Krylov method for each pole, or Lanczos for the exponential */
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
-    /* The same on a ball of radius 10 sqrt(t) or more around the source, or around where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. For queries
-     * with a time, without pole sets; needs b_ratio > 0 */
+    /* The same on a ball of radius 10 sqrt(t) or more around the source, or where a field is not zero;
+     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. Needs a time
+     * and b_ratio > 0; not for pole sets */
     HD_METHOD_LOCAL
 } hd_method;
 
-/* In which a factorisation eliminates rows. */
+/* The order of elimination. */
 typedef enum hd_ordering {
     HD_ORDERING_AUTO = 0,           /* nested dissection for large meshes, else minimum degree */
     HD_ORDERING_MINIMUM_DEGREE,     /* approximate minimum degree (Amestoy, Davis, Duff 1996) */
@@ -502,7 +471,7 @@ typedef enum hd_ordering {
 typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
-    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013), with the preconditioner of t L + |theta| B */
+    HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013) */
     HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
 } hd_solver;
 
@@ -526,27 +495,25 @@ typedef struct hd_heat_opts {
     double tol;                 /* the solver's part of |error|_B / |answer|_B; default 1e-9 */
     int32_t max_iterations;     /* per system; default 20000 */
     double cut;                 /* sparse columns leave out values below this times the largest */
-    hd_ordering ordering;       /* auto: a plan may keep a second one, for few columns */
+    hd_ordering ordering;
     const int32_t *perm;
     hd_context *context;
     int32_t end_zero;
 } hd_heat_opts;
 
-/* K_t = exp(-t B^-1 L), and k_t = K_t B^-1. */
+/* K_t, or k_t = K_t B^-1. */
 typedef enum hd_kernel { HD_KERNEL_OPERATOR = 0, HD_KERNEL_SYMMETRIC } hd_kernel;
 
-/* Each source gives a column. It is a vertex, or points inside faces, on edges or at vertices, each with a
- * weight, or a curve through points. In formulas it is a functional c of fields that are linear on each face:
- * c_v is what it takes of vertex v. Set count and vertex, or see hd_vertices. */
+/* Each source gives a column. It is a vertex, points with weights, or a curve through points. In formulas
+ * it is a functional c of fields that are linear on each face: c_v is what it takes of vertex v. Set count
+ * and vertex, or see hd_vertices. */
 typedef struct hd_sources {
     int32_t begin_zero;
     int32_t count;
     const int64_t *first;       /* [count + 1] where the points of each source begin; NULL: one each */
-    /* Vertices a point lies between: 1 at a vertex, 2 on an edge, 3 in a triangle, more in polygons. 0: 1.
-     * Points of triangles may lie on edges or at vertices, with zeros in bary. */
-    int32_t corners;
+    int32_t corners;            /* of each point: 1 at a vertex, 2 on an edge, 3 or more in a face; 0: 1 */
     /* 1: a source is a curve of straight pieces from each point to its next, at least two points. Each piece
-     * lies in one face, edges and corners included, and weighs its length. To close it, repeat the first. */
+     * lies in one face, edges included, and weighs its length. To close it, repeat the first. */
     int32_t curve;
     const int32_t *vertex;      /* [corners] of each point */
     const double *bary;         /* [corners] of each point: >= 0, sum 1 up to 1e-6; NULL: the corners' mean */
@@ -559,14 +526,13 @@ typedef struct hd_sources {
  * and have no time. */
 typedef enum hd_distance_kind {
     HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper. Not intrinsic: for large t d tends to
-     * |b_i - b_j|/sqrt(area). */
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d tends to |b_i - b_j|/sqrt(area) */
     HD_DISTANCE_WEIGHTED,
     HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
     HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
 } hd_distance_kind;
 
-/* How a part of an error bound is known. For several answers the report holds the largest number. */
+/* How a part of an error bound is known. For several answers the report holds the largest. */
 typedef enum hd_evidence {
     HD_EVIDENCE_NONE = 0,       /* the part does not apply */
     HD_EVIDENCE_PROVEN,         /* a theorem, applied to norms and residuals of this answer */
@@ -576,16 +542,16 @@ typedef enum hd_evidence {
 
 /* What happened, and how large the error can be: the worst of all fields, columns and times. error_bound
  * bounds the error of any value returned, relative to the largest |value| of its column, or of the whole list
- * for entries and pairs. Above 1e-2 the status is HD_WARN_ACCURACY. It is the sum of four parts: the rational
+ * for entries and pairs; above 1e-2 the status is HD_WARN_ACCURACY. It sums four parts: the rational
  * approximation, the iterative solver, rounding, and what method local leaves out. */
 typedef struct hd_report {
     hd_status status;
-    hd_error error;             /* if status < 0 */
+    hd_error error;             /* as err, if status < 0 */
     hd_method method;
     const char *reason;         /* of this method */
     hd_solver solver;           /* HD_SOLVER_AUTO for direct, HD_SOLVER_LANCZOS for krylov */
     hd_precond precond;         /* HD_PRECOND_NONE for Lanczos and direct */
-    hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos, which has none */
+    hd_pole_kind poles;         /* HD_POLES_DEFAULT for Lanczos */
     int32_t degree, n_poles;    /* 0 for Lanczos */
     int64_t iterations;         /* of all systems and fields; Lanczos: steps */
     int64_t pole_iterations[HD_MAX_POLES];  /* of all fields */
@@ -594,18 +560,17 @@ typedef struct hd_report {
     double factor_flops;        /* of those that the plan holds */
     double growth;              /* see hd_ldl_report */
     /* Largest |b - A x| / |b| over the systems, in the norm of diag(B)^-1; 0 for Lanczos. After
-     * HD_ERR_NOT_CONVERGED: of the system that failed; for Lanczos its bound on the relative error. */
+     * HD_ERR_NOT_CONVERGED of the system that failed; for Lanczos a bound on the relative error. */
     double residual;
     double error_bound, error_rational, error_solver, error_rounding, error_local;
     hd_evidence evidence_rational, evidence_solver, evidence_rounding, evidence_local;
     /* Fields and columns: bound on |error|_B / |answer|_B; otherwise HUGE_VAL. */
     double error_bound_b;
     hd_evidence evidence_b;
-    /* Diagonals, distances, pairs: bound on the error of each value relative to itself; otherwise, or if a
-     * value is zero that need not be zero, HUGE_VAL. */
+    /* Diagonals, distances, pairs: bound on each relative error; else, or if a 0 may be wrong, infinite. */
     double error_relative;
-    double smallest;            /* diagonals and distances: the smallest value that is not zero */
-    int64_t n_lost;             /* distances with at most about one sure digit */
+    double smallest;            /* diagonals and distances: the smallest non-zero value */
+    int64_t n_lost;             /* distances with one sure digit or none */
     int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
     double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
 } hd_report;
@@ -621,15 +586,14 @@ typedef struct hd_spectrum_opts {
     int32_t end_zero;
 } hd_spectrum_opts;
 
-/* The smallest eigenpairs of L x = lambda B x, to be read only. The Laplacian must outlive them, and must not
- * be updated. */
+/* The smallest eigenpairs of L x = lambda B x, read only. The Laplacian must outlive them unchanged. */
 typedef struct hd_spectrum {
     int32_t n, count;           /* vertices; pairs */
     double *value;              /* [count] eigenvalues, ascending, 1/area */
     /* [n count] column-major, B-orthonormal, 0 at vertices without mass; the largest |entry| is positive */
     double *vector;
-    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; for lambda near 0 divided by
-     * the first eigenvalue that does not belong to constants */
+    /* [count] |L x - lambda B x| / lambda in the norm of diag(B)^-1, measured; lambda near 0: divided by
+     * value[n_constant] */
     double *residual;
     double largest_residual;
     int32_t n_poor;             /* pairs of residual above tol and rounding, or above 0.1 */
@@ -668,11 +632,11 @@ typedef enum hd_query {
 typedef struct hd_cost {
     int32_t possible;           /* 0: the query or the plan's options rule the method out; the rest is 0 */
     int32_t fits;               /* 1: bytes are within what the byte limit leaves */
-    double flops;               /* real floating-point operations of factorisations, inversions and solves */
-    double seconds;             /* on one idle core, up to a factor of about 2; slivers may take longer */
+    double flops;               /* real operations of factorisations, inversions and solves */
+    double seconds;             /* on one idle core, up to a factor of about 2 */
     double bytes;               /* at the peak, beyond what the context has in use now */
-    /* The same if a bound would be too large, and poles of degree 14 or eigenpairs take over. With this much
-     * room the direct method gives the same answers as without a limit. */
+    /* The same if poles of degree 14 or eigenpairs take over for a better bound. With this much room the
+     * direct method answers as without a limit. */
     double bytes_most;
 } hd_cost;
 
@@ -692,11 +656,11 @@ typedef enum hd_geodesic_mass {
 /* How heat meets the border of a mesh while it flows. */
 typedef enum hd_geodesic_border {
     HD_GEODESIC_BORDER_NATURAL = 0, /* no heat leaves; fronts meet the border at a right angle */
-    /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend, and
-     * t may be larger, such as 8 h^2. */
+    /* The mean of the two others (Crane et al. 2013, section 3.4), by a third factor. Fronts hardly bend; t
+     * may be larger, such as 8 h^2. */
     HD_GEODESIC_BORDER_MEAN,
     /* Zero at the border: fronts follow it, and distances from places near it are too short. No source may
-     * lie there, nor in a face with a corner there. */
+     * lie in a face with a corner there. */
     HD_GEODESIC_BORDER_DIRICHLET
 } hd_geodesic_border;
 
@@ -705,11 +669,11 @@ typedef struct hd_geodesic_opts {
     /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
      * distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
-    hd_geodesic_mass mass;      /* the diagonal of B, which has little influence on the distance */
+    hd_geodesic_mass mass;      /* the diagonal of B, of little influence */
     hd_ordering ordering;
     const int32_t *perm;
     hd_context *context;
-    int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; keeps L, 100 bytes a face */
+    int32_t updatable;          /* 1: hd_geodesic_update of triangles in space; takes 100 bytes a face */
     hd_geodesic_border border;
     hd_triangulation triangulation; /* points need tufted; Delaunay and tufted split polygons */
     double mollify;             /* as in hd_laplacian_opts */
@@ -722,37 +686,33 @@ typedef struct hd_geodesic_opts {
 /* The worst of all columns of a call. */
 typedef struct hd_geodesic_report {
     hd_status status;           /* HD_WARN_ACCURACY: a residual is above 1e-6 */
-    hd_error error;             /* if status < 0 */
+    hd_error error;             /* as err, if status < 0 */
     double t, h;
     int32_t n_components, n_stages;   /* n_stages: heat solves, several where heat fades below 1e-200 */
     hd_ordering ordering;
     int64_t factor_nnz;
     double factor_flops;
-    /* |b - A x| / |b| of (L + B/t) u and of L phi; they say nothing of the error of the method itself */
+    /* |b - A x| / |b| of (L + B/t) u and of L phi; not the error of the method */
     double residual_heat, residual_distance;
 } hd_geodesic_report;
 
 /* ==== [D] functions ==== */
-/* Common to all functions. Arguments come in this order: the object made or worked on; what is asked for; the
- * input; the output; report; err. A count stands before its array, except for meshes and points (xyz, n).
- * opts, ctx, report and err may be NULL, as may what is freed, and outputs marked "or NULL". Matrices are
- * column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
+/* Common to all functions. opts, ctx, report, err, what is freed, and outputs marked "or NULL" may be NULL.
+ * Matrices are column-major, with columns ldf, ldu, ldd, ldb or ldx apart (0: n).
  * After an error nothing is left allocated, *out and what was to be updated are unchanged, and output arrays
- * hold unspecified numbers.
- * The entry Errors lists those that say where in the input the fault lies, or have a special cause. Any
- * function may also return HD_ERR_ARGUMENT (a pointer is missing, a size is negative, an option is out of its
- * range or was not cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED and
- * HD_ERR_NOT_BUILT. */
+ * hold unspecified numbers. The entry Errors lists those with a place in the input or a special cause. Any
+ * function may also return HD_ERR_ARGUMENT (a missing pointer, a negative size, an option out of its range or
+ * not cleared), HD_ERR_TOO_LARGE, HD_ERR_MEMORY, HD_ERR_MEMORY_LIMIT, HD_ERR_CANCELLED, HD_ERR_NOT_BUILT. */
 
 /* ---- statuses ---- */
 
-/* Static strings, never NULL. */
+/* Static, never NULL. */
 HEATDIFF_API const char *hd_status_name(hd_status status);  /* "HD_ERR_MEMORY" */
 HEATDIFF_API const char *hd_status_text(hd_status status);  /* "out of memory" */
 
 /* ---- sparse matrices ---- */
 
-/* A matrix from triplets (i, j, v) in any order. Values at the same place are summed in the order given.
+/* A matrix from triplets (i, j, v) in any order. Those at one place are summed in the order given.
  * i, j, v [n_triplets]; v NULL: a pattern
  * Errors  HD_ERR_INDEX, HD_ERR_NOT_FINITE (row: the triplet; of a sum that overflows row and column)
  * Cost    linear */
@@ -772,45 +732,39 @@ HEATDIFF_API hd_mesh hd_triangles(const double *xyz, int32_t n, const int32_t *t
 /* Vertices as sources. */
 HEATDIFF_API hd_sources hd_vertices(int32_t count, const int32_t *vertex);
 
-/* The Laplacian of a mesh. Non-manifold edges and several components are allowed.
+/* The Laplacian of a mesh, which may have non-manifold edges and several components.
  * triangles kinds fem, voronoi-cot, cot
- * polygons  kind polygon: faces may be neither planar nor convex, the pattern of L contains their diagonals,
- *           and triangles have the cotangent L. For the kinds of triangles every face is split into a fan
- *           from its first corner; out->mesh counts triangles then, errors name the polygon
- * points    kinds voronoi-exp, exp. The default bandwidth2 is s = m (m/h^2)/4, within 0.3 m and m, where m is
- *           the mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
+ * polygons  kind polygon: faces may be neither planar nor convex, L couples all corners of a face, and
+ *           triangles have the cotangent L. The kinds of triangles split faces into fans from their first
+ *           corner; out->mesh counts triangles then, errors name the polygon
+ * points    kinds voronoi-exp, exp. Default bandwidth2: s = m (m/h^2)/4, within 0.3 m and m, where m is the
+ *           mean of pi r_k^2/k, and r_k the distance of the k-th neighbour. A row has about 230 s/m
  *           non-zeros; weight_cut = 1e-4 halves that and changes the operator by 0.1 %. For errors below 1 to
  *           3 %, let s/m grow as points become denser.
  *           Tufted points have the kinds of triangles, and 7 to 13 non-zeros in a row. Their Delaunay stars
- *           in the tangent planes form a soup of triangles, each of which counts a third; out->mesh describes
- *           it. Points in no star are inert, as are searched points at the place of an earlier one. Sheets
- *           two spacings apart stay separate (three for random points); closer ones if nbr leaves out
- *           neighbours whose normals point the other way
- * Delaunay, tufted: the surface and its vertices stay. With voronoi-cot or cot heat obeys the maximum
- *           principle
+ *           in the tangent planes form a soup of triangles, each of which counts a third. Points in no star
+ *           are inert, as are searched points at the place of an earlier one. Sheets closer than two spacings
+ *           (random points: three) stay separate only if nbr leaves out the other sheet
+ * Delaunay, tufted: the surface and its vertices stay; voronoi-cot and cot obey the maximum principle
  * lengths   intrinsic geometry, such as a flat torus; no nested dissection
  * Errors HD_ERR_INDEX (face, value: the id; row: of held), HD_ERR_NOT_FINITE (vertex or face, value),
  *        HD_ERR_STRUCTURE (face: face_ptr descends there), HD_ERR_EMPTY; HD_ERR_ARGUMENT (face, vertex,
- *        value: a coordinate or weight beyond 1e100, all points within 1e-100 of each other, an area that is
- *        not zero and outside 1e-100 .. 1e100, a length that cannot be, or one that two faces disagree on).
- *        nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
+ *        value: a coordinate, area or weight beyond 1e100, a non-zero size below 1e-100, an impossible
+ *        length, or one that faces disagree on). nbr: HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_TOO_LARGE (row)
  * Cost   O(n + faces + flips); a polygon with k corners k^2; points O(n log n + nnz)
- * Source see hd_laplacian_kind; polygons have one stiffening for all faces. Exponential weights are cut by
- *        distance, so that L is symmetric; neighbours more than 45 degrees off the tangent plane count with
- *        their height. Bobenko, Springborn 2007: Delaunay; Sharp, Crane 2020: tufted, section 5.7: points */
+ * Source hd_laplacian_kind; Delaunay: Bobenko, Springborn 2007; tufted: Sharp, Crane 2020, 5.7 for points */
 HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *mesh,
                                            const hd_laplacian_opts *opts, hd_error *err);
 
-/* The pair of the caller's own matrices, copied onto the union of their patterns. Explicit zeros stay if
- * their mirror entry is stored too.
- * L      n x n, symmetric positive semi-definite: checked are L_ii >= 0 and L_ij^2 <= L_ii L_jj. If its rows
- *        do not sum to zero, heat is not conserved
- * B      n x n, symmetric positive definite: checked on the diagonal, by a factorisation if some row is not
- *        dominated by its diagonal, and later by solvers. Rows without non-zeros are inert vertices
- * h      for lap->h; 0 if there is none
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if the sizes of a row's entries add up to
- *        more than 1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with
- *        row, column, value; HD_ERR_EMPTY
+/* The pair of the caller's own matrices, copied onto the union of their patterns. An explicit zero stays if
+ * its mirror entry is stored too.
+ * L      n x n, symmetric positive semi-definite; checked: L_ii >= 0 and L_ij^2 <= L_ii L_jj
+ * B      n x n, symmetric positive definite; checked on the diagonal, by a factorisation unless it is
+ *        diagonally dominant, and later by solvers. Rows without non-zeros are inert vertices
+ * h      for lap->h, or 0
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_FINITE (also if a row's |entries| sum to more than
+ *        1e100), HD_ERR_NOT_SYMMETRIC, HD_ERR_NOT_POSITIVE (also if B_ii is below 1e-100), all with row,
+ *        column, value; HD_ERR_EMPTY
  * Cost   linear, except for a factorisation of B */
 HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L, const hd_csr *B,
                                              double h, const hd_laplacian_opts *opts,
@@ -820,17 +774,17 @@ HEATDIFF_API hd_status hd_laplacian_matrices(hd_laplacian **out, const hd_csr *L
 HEATDIFF_API hd_status hd_laplacian_apply(const hd_laplacian *lap, double alpha, double beta,
                                           const double *x, double *y, hd_error *err);
 
-/* New positions for the same faces, of a Laplacian with the option updatable. Plans on lap keep their
- * analysis, and use the new values from the next query on; none may be at work meanwhile. Rows, pattern, held
- * vertices and the faces left out stay as they are; faces that lose their area are counted. All else is that
- * of a new Laplacian, to the last bit, in the same arrays.
+/* New positions for the same faces, of an updatable Laplacian. Plans on lap keep their analysis, and use the
+ * new values from the next query on; none may be at work meanwhile. Rows, pattern, held vertices and the
+ * faces left out stay; faces that lose their area are counted. All else is as in a new Laplacian, to the last
+ * bit, in the same arrays.
  * mesh   n as before, and positions; its faces are not read
- * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: none of its faces has an area any more) */
+ * Errors as of hd_laplacian_create; HD_ERR_EMPTY (vertex: all its faces have lost their area) */
 HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mesh, hd_error *err);
 
 /* The same for matrices.
- * L, B   n x n. Entries that are not in the pattern must be zero; missing ones become zero. Inert vertices
- *        stay inert, and a diagonal B stays diagonal
+ * L, B   n x n. Entries not in the pattern must be zero; missing ones become zero. Inert vertices stay inert,
+ *        and a diagonal B stays diagonal
  * Errors as of hd_laplacian_matrices; HD_ERR_STRUCTURE (row, column, value: a new entry) */
 HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_csr *L,
                                                     const hd_csr *B, double h, hd_error *err);
@@ -840,8 +794,7 @@ HEATDIFF_API void hd_laplacian_free(hd_laplacian *lap);
 /* ---- neighbours of points ---- */
 
 /* The k nearest points of each query point, exactly.
- * index      [k m] k ids for each query, nearest first, equally distant ones by id; -1 beyond n. A query that
- *            is a point of the set finds itself too
+ * index      [k m] ids by distance, then id; -1 beyond n. Points of the set find themselves too
  * distance2  [k m] or NULL: squared distances, infinite beyond n
  * xyz, query [3 n], [3 m] coordinates of at most 1e100; query NULL: all n points, m = n
  * Errors     HD_ERR_NOT_FINITE (vertex, or row for a query)
@@ -859,12 +812,11 @@ HEATDIFF_API hd_status hd_neighbours_nearest(const double *xyz, int32_t n, const
 HEATDIFF_API hd_status hd_rational_exp(hd_rational *out, hd_pole_kind kind, int32_t degree,
                                        hd_error *err);
 
-/* Kernel sets out [n_times] that share their poles: theta_i/t[q] is the same for all q, so that one set of
- * factors serves every time.
+/* Kernel sets out [n_times] with one set of factors for every time: theta_i/t[q] is the same for all q.
  * t      [n_times] > 0, in any order
  * tol    of max_weighted_error; at 1e-6, times that differ by 10, 100 and 1000 take 8, 12 and 16 pairs
  * Errors HD_ERR_ARGUMENT: a time is not positive (row), or no set has this ratio of the times (value)
- * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles instead of poles on a hyperbola */
+ * Source Lopez-Fernandez, Palencia, Schaedle 2006, with free poles */
 HEATDIFF_API hd_status hd_rational_shared(hd_rational *out, int32_t n_times, const double *t,
                                           double tol, hd_context *ctx, hd_error *err);
 
@@ -873,16 +825,13 @@ HEATDIFF_API double hd_rational_eval(const hd_rational *set, double x);
 
 /* Sets for filters f: K_t becomes f(B^-1 L), and k_t becomes f(B^-1 L) B^-1. In distances f is what d^2 sums,
  * for example exp(-2 t lambda), and should not be negative.
- * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max] with t = out->t. Several sets differ only in
- *            the weights a. max_error is the largest |f - c| on 42,000 points
- * filters    [count] degrees rise until tol or max_degree is reached. Several filters ignore max_degree, and
- *            take at most HD_MAX_POLES pairs
+ * out        [count] c(-t lambda) ~ f(lambda) on [0, lambda_max], t = out->t. Several differ only in a
+ * filters    [count] degrees rise until tol or max_degree. Several take up to HD_MAX_POLES pairs instead
  * lambda_max that of the Laplacian, or more; 1/area
  * Errors     HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE (value: the eigenvalue), HD_ERR_BREAKDOWN (a weight
  *            overflows), all with column: which filter. HD_WARN_ACCURACY: an error is above its tol
- * Cost       2 to 50 milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
- * Source     Nakatsukasa, Sete, Trefethen 2018, with weights refitted to the poles; Lietaert, Meerbergen,
- *            Perez, Vandereycken 2022 for several functions at once */
+ * Cost       milliseconds, and 50 to 200 thousand values of f; seconds for 100 filters
+ * Source     Nakatsukasa, Sete, Trefethen 2018; several: Lietaert, Meerbergen, Perez, Vandereycken 2022 */
 HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd_filter *filters,
                                        double lambda_max, hd_context *ctx, hd_error *err);
 
@@ -903,7 +852,7 @@ typedef struct hd_solve_opts {
 
 typedef struct hd_solve_report {
     int64_t iterations;
-    double residual;            /* |b - A x| / |b|, computed from x, in the norm of diag(B)^-1 */
+    double residual;            /* |b - A x| / |b| in the norm of diag(B)^-1 */
     double error_b;             /* bound on |x - exact|_B / |x|_B; infinite if b_ratio is 0 */
 } hd_solve_report;
 
@@ -922,8 +871,7 @@ HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c6
 
 /* The factorisation P A P' = L D L' without pivoting, for real definite or quasi-definite matrices, and for
  * complex-symmetric ones (A = A', never conjugated) whose real part is definite after a rotation, such as
- * t L + theta B. One analysis of a pattern serves any number of factorisations. Only the first of each kind
- * allocates. */
+ * t L + theta B. One analysis serves any number of factorisations. Only the first of each kind allocates. */
 typedef struct hd_ldl hd_ldl;
 
 typedef struct hd_ldl_opts {
@@ -941,18 +889,16 @@ typedef struct hd_ldl_report {
     int32_t n_matrices;         /* in the factor; 0: only analysed */
     int64_t factor_nnz;         /* without padding */
     int64_t stored;             /* the same with padding */
-    double factor_flops;        /* of one real factorisation; a complex matrix takes four times as many */
-    /* Largest |pivot| / largest |diagonal entry of A|: what is lost because there is no pivoting. At most 3.8
-     * for uniform sets and 4.2 for kernel sets. */
-    double growth;
-    double smallest_pivot;      /* smallest |pivot| / largest |diagonal entry of A| */
+    double factor_flops;        /* of one real factorisation */
+    double growth;              /* largest |pivot| / largest |A_ii|: what is lost without pivoting */
+    double smallest_pivot;      /* smallest |pivot| / largest |A_ii| */
     int32_t n_negative;         /* real: negative pivots, as many as negative eigenvalues */
 } hd_ldl_report;
 
 /* Computes the ordering, the elimination tree and the supernodes.
- * a      n x n with a symmetric pattern. Values are ignored, and diagonal entries may be missing
- * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column
- *        0 to 2: a coordinate)
+ * a      n x n with a symmetric pattern. Values are ignored; diagonal entries may be missing
+ * Errors HD_ERR_STRUCTURE, HD_ERR_INDEX, HD_ERR_NOT_SYMMETRIC (row, column); HD_ERR_NOT_FINITE (row; column 0
+ *        to 2: a coordinate)
  * Cost   nearly linear in the non-zeros of A, plus the ordering
  * Source Amestoy, Davis, Duff 1996; George 1973; Gilbert, Ng, Peyton 1994 */
 HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
@@ -1005,8 +951,8 @@ HEATDIFF_API void hd_ldl_free(hd_ldl *f);
 
 typedef struct hd_heat hd_heat;
 
-/* A plan for heat on lap, which must outlive it. Making one is cheap: the first query at a time t pays for
- * ordering and factors. The plan keeps those of the last pole set and time. */
+/* A plan for heat on lap, which must outlive it. The first query at a time t pays for ordering and factors;
+ * the plan keeps those of the last pole set and time. */
 HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
                                       const hd_heat_opts *opts, hd_error *err);
 HEATDIFF_API void hd_heat_free(hd_heat *heat);
@@ -1021,45 +967,43 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
 
 /* Common to all queries of a plan
  * t      [n_times] >= 0, in any order, unit length^2; > 0 for diagonals, samples and distances to all
- *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic ignore t:
- *        n_times is 0 or 1
+ *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic: n_times is
+ *        0 or 1, and t is not read
  * fields F, G [n k]. Answers U, D have n rows, and the column q n_times + m for field or source q at time m
  * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
  * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
- *        HD_WARN_ACCURACY. report->error is the same as err
+ *        HD_WARN_ACCURACY
  *        fields:  HD_ERR_NOT_FINITE (row, column)
  *        pairs:   HD_ERR_INDEX (vertex; row: which pair)
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
- *                 points, vertex): bary is not as hd_sources asks, a curve has one point, no length or no
- *                 coordinates, or weights or lengths sum to less than 1e-100 or more than 1e100
- *        method:  HD_ERR_ARGUMENT. Distances to all vertices and samples need auto or direct, as do pairs by
- *                 commute, biharmonic or a filter; diagonals and traces need these or local
- * Where all heat flows out, answers fall like exp(-t lambda_1), while the error of poles does not. From about
- * t = 15/lambda_1 on methods auto and direct take the few eigenpairs left. Where all values underflow, the
- * bound is above 1 or infinite.
- * Cost   of fields and columns, direct: one factorisation of all poles for each new t, and one sweep through
- *        the factors for eight fields. krylov: one real factorisation, and 15 to 30 real solves for each
- *        field and one or two decades of t. iterative: one solve for each pole */
+ *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
+ *                 more than 1e100
+ *        method:  HD_ERR_ARGUMENT. Diagonals, traces, samples and distances to all vertices need auto, direct
+ *                 or local; distances by commute, biharmonic or a filter need auto or direct
+ * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
+ * methods auto and direct take the few eigenpairs left.
+ * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
+ *        factors for eight fields. krylov: one real factorisation, 15 to 30 real solves for each field and
+ *        one or two decades of t. iterative: one solve for each pole */
 
-/* U = K_t F at each time. t = 0 copies F; for large t, without limit, U tends to the mean over each
- * component. U may be F if there is one time. The default degree is the largest that one of the fields needs.
- * Source the paper, eqs. (8) and (9), with the signs given at the top of the file */
+/* U = K_t F at each time. t = 0 copies F; for large t U tends to the mean over each component. U may be F if
+ * there is one time.
+ * Source eqs. (8) and (9) of the paper, with the signs given at the top */
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu,
                                      hd_report *report, hd_error *err);
 
 /* U = dK_t/dt F = -B^-1 L K_t F at each time; unit 1/area; 0 at vertices without mass; default degree 14.
- * report bounds are relative to the derivative. Where only means are left it is 0, and the bound infinite
+ * report bounds are relative to the derivative: infinite if it is 0
  * Errors HD_ERR_ARGUMENT with a pole set of your own
  * HINT: to train t, give the plan poles = HD_POLES_KERNEL and a degree. Then apply, derivative and adjoint at
- * one t share the direct method's factors, and the adjoint is that of the very matrix applied, up to
- * rounding. If G is the gradient of a loss in U = K_t F, that in F is K_t' G, and that in t is the sum of all
- * G_ij (dK_t/dt F)_ij. */
+ * one t share factors, and the adjoint is that of the matrix applied, up to rounding. If G is the gradient of
+ * a loss in U = K_t F, that in F is K_t' G, and that in t the sum of all G_ij (dK_t/dt F)_ij. */
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t,
                                           int32_t k, const double *F, size_t ldf, double *U,
                                           size_t ldu, hd_report *report, hd_error *err);
 
-/* U = K_t' G = B K_t B^-1 G, with the transpose, at each time. The sum of values is kept.
+/* U = K_t' G = B K_t B^-1 G at each time. The sum of values is kept.
  * report error_bound_b is in the norm of B^-1, in which |K_t' g| <= |g|
  * Cost   with a full B about 30 more products with B for each field */
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
@@ -1074,7 +1018,6 @@ HEATDIFF_API hd_status hd_heat_columns(hd_heat *heat, hd_kernel kernel, int32_t 
 /* The same as rows of a sparse matrix, without zeros: row q n_times + m for source q at time m.
  * out    cleared, or an earlier answer, which is freed. hd_csr_free takes the plan's context
  * report error_bound includes opts.cut: a value that is not there is at most error_bound times the largest
- * Errors HD_ERR_TOO_LARGE: more than 2^31 - 1 rows
  * Cost   with method local no work or memory grows with n after the first call */
 HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                               const double *t, const hd_sources *sources,
@@ -1086,46 +1029,40 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
 
 /* The diagonal of k_t or K_t, and the heat trace, by selected inversion. That of k_t is the heat kernel
  * signature (Sun et al. 2009), or auto-diffusion function (Gebal et al. 2009); divided by the trace it has
- * the integral 1 (Sun et al. 2009, section 4). For wave filters D/Z are wave kernel signatures. Each of
- * several filters has a column, a Z and a bound, which is looser than that of one alone.
+ * the integral 1. For wave filters D/Z are wave kernel signatures. Several filters have a column, a Z and a
+ * looser bound each.
  * D      n x n_times, or NULL
  * Z      [n_times] or NULL: tr K_t = sum_i exp(-t lambda_i) over the rows of the Laplacian; no unit
- * bound  [n_times] or NULL: bounds on the absolute error of each Z
- * report the rational part is proven at every vertex; rounding is measured where it is largest. If B is not
- *        diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
+ * bound  [n_times] or NULL: of the absolute error of each Z
+ * report if B is not diagonal, k_t leaves out the term a0 diag(B^-1) of a set; the bound includes it
  * Errors HD_ERR_MEMORY_LIMIT: method auto or local, and not even the smallest patches fit
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local: the memory of one patch. The byte limit says how small patches have to be: to half of the
- *        memory takes one to two times as long, to a sixth two to six times. Auto takes patches where they
- *        cost less, or where factors of the whole mesh exceed the limit
+ *        local: patches that fit the byte limit; half the memory takes up to twice as long. Auto takes
+ *        patches where they cost less, or where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
                                         double *bound, hd_report *report, hd_error *err);
 
 /* Times t [n_times] that suit the area A = 1'B1 (kind exp: the squared area): evenly spaced in log t from
- * 0.0024 A to 0.37 A, where about 300 and two eigenvalues matter. One time is their geometric mean. To suit
- * the first eigenvalue, take c/value[n_constant] of hd_spectrum instead: c = 1 shows tips and branches, 0.1
- * details (Gebal et al. 2009).
- * Source Weyl's law: the k-th eigenvalue is about 4 pi k/A */
+ * 0.0024 A to 0.37 A; one time is the geometric mean. To suit the first eigenvalue, take c/value[n_constant]
+ * of hd_spectrum: c = 1 shows tips and branches, 0.1 details (Gebal et al. 2009).
+ * Source Weyl's law */
 HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, double *t,
                                      hd_error *err);
 
 /* Distances d from each source to every vertex: d^2 = (e_v - c)' F (e_v - c). c is the functional of the
  * source divided by the sum of its weights, which must be positive; F is k_2t, B K_2t and so on by the kind,
- * or the filter itself. Vertices without mass, and held ones, have a zero row in F. d is zero only at a
- * vertex that is the source itself.
+ * or the filter itself. Vertices without a row have a zero row in F. d is zero only at a vertex that is the
+ * source itself.
  * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
  *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
  *        into several components or such vertices. Where heat is lost they are those of L^-1
- * report bounds are for d itself; n_lost counts values next to the source or underflowing. By default degree
- *        14 takes over if a bound would be above 3.5e-7, and at large t the few eigenpairs left, if the byte
- *        limit allows them. Between the two, above about 170K vertices (weighted) or 240K (classical), bounds
- *        may exceed 1e-6
- * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source. Patches
- *        as in hd_heat_diagonal, with poles of degree 14.
+ * report bounds are for d itself. By default poles of degree 14, or the few eigenpairs left at large t, take
+ *        over where they need it and the byte limit allows. Above 170,000 vertices bounds may exceed 1e-6
+ * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
  *        Eigenpairs: hd_spectrum_create once, then 4 n flops for each. Commute: one real factorisation and
  *        its inversion; biharmonic: also those of one pole */
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -1133,8 +1070,8 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         size_t ldd, hd_report *report, hd_error *err);
 
 /* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. Commute,
- * biharmonic, filters, and lists whose columns would take more than half a GiB, come from entries and the
- * diagonal at 2t: sort the pairs by i then.
+ * biharmonic, filters, and lists whose columns take more than half a GiB, use entries and the diagonal at 2t:
+ * sort pairs by i then.
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
@@ -1142,7 +1079,7 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
                                               hd_error *err);
 
 /* Farthest points: each is the vertex farthest from all sources and all points before it.
- * sources  as in hd_heat_distance. NULL: none; the vertex of the first row is then the first point
+ * sources  as in hd_heat_distance. NULL: none; the first point is then the vertex of the first row
  * vertex   [count]
  * distance [count] or NULL: of each point to those before it (0 for the first without sources)
  * Errors   HD_ERR_ARGUMENT (value: count is more than n_active)
@@ -1152,9 +1089,9 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       const hd_sources *sources, int32_t count, int32_t *vertex,
                                       double *distance, hd_report *report, hd_error *err);
 
-/* Single entries (i, j) of K_t or k_t. The bound is relative to the largest |value| of all, and may say
- * nothing about small ones.
- * Cost   one column for each distinct j, with n doubles of memory at a time */
+/* Single entries (i, j) of K_t or k_t. The bound may say nothing about small ones.
+ * Cost   one column for each distinct j, with n doubles of memory at a time. Method local or auto, and 256
+ *        vertices or more with i = j: the diagonal on patches around them */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
@@ -1164,21 +1101,20 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
 
 /* The smallest eigenpairs, with all copies of multiple eigenvalues.
  * opts   not NULL: count, at most n_active, or below, or both: whichever ends first
- * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY with a result: n_poor is not 0, or
- *        proven is 0
- * Cost   for about 100 pairs one real factorisation, some 250 solves, and as many vectors made orthogonal; at
- *        the end 4 n count^2 flops. Memory: the vectors twice, some 400 more, and a factor
- * Source Grimes, Lewis, Simon 1994: block Lanczos with shifts, eigenvalues counted by Sylvester's law */
+ * Errors HD_ERR_NOT_POSITIVE, HD_ERR_NOT_CONVERGED; HD_WARN_ACCURACY: n_poor is not 0, or proven is 0
+ * Cost   for about 100 pairs one real factorisation and some 250 solves; at the end 4 n count^2 flops.
+ *        Memory: the vectors twice, some 400 more, and a factor
+ * Source Grimes, Lewis, Simon 1994 */
 HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian *lap,
                                           const hd_spectrum_opts *opts, hd_error *err);
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s);
 
-/* Kernels and distances from the pairs of s, as in eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x)
- * x_i(y) and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
- * bound  NULL, or of the output's shape: bounds on the error of each value. Pairs left out add at most
+/* Kernels and distances from the pairs of s, by eq. (1) of the paper: sums of exp(-t lambda_i) x_i(x) x_i(y)
+ * and the like. All else is as in hd_heat_columns, hd_heat_diagonal and hd_heat_distance, but t >= 0.
+ * bound  NULL, or of the output's shape: bounds on errors. Pairs left out add at most
  *        exp(-t next) sqrt(left(x) left(y)), proven if s->proven; rounding is estimated
- * Cost   2 n count flops for each column; with the weighted distance or the diagonal of K_t and a full B some
- *        ten times as many */
+ * Cost   2 n count flops for each column; some ten times as many for weighted distances or the diagonal of
+ *        K_t with a full B */
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err);
@@ -1193,9 +1129,8 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 /* What a query would take by each method, without running it.
  * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
- * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. For the direct method
- *          they are an upper bound, by a few percent (where eigenpairs come first that of poles); for others
- *          they are estimates. What patches take is not known
+ * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. They bound the need
+ *          of the direct method within a few percent; for others they are estimates, for patches unknown
  * Errors   HD_ERR_ARGUMENT: diagonals, or distances to all, with method local
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
@@ -1210,15 +1145,14 @@ typedef struct hd_geodesic hd_geodesic;
  * mesh   as in hd_laplacian_create, whose errors it has. With slivers, use a Delaunay triangulation
  * Errors HD_ERR_BREAKDOWN (vertex: a pivot too small to divide by)
  * Cost   assembly, one analysis, two real factorisations. The plan keeps 16 bytes for each non-zero of the
- *        factor and about 430 for each vertex; polygons 28 more for each corner and 12 for each non-zero of L
- * Source Crane, Weischedel, Wardetzky 2013, algorithm 1 and section 3.2.1; gradients on polygons: Alexa,
- *        Wardetzky 2011 */
+ *        factor and about 430 for each vertex, more for polygons
+ * Source Crane, Weischedel, Wardetzky 2013, algorithm 1, section 3.2.1; polygons: Alexa, Wardetzky 2011 */
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err);
-/* New positions for the same triangles, of a plan made with the option updatable.
+/* New positions for the same triangles, of an updatable plan.
  * mesh   as in hd_laplacian_update
- * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has no area any more). After
- *        any other error the plan has changed, and answers no query until an update succeeds
+ * Errors HD_ERR_ARGUMENT, HD_ERR_NOT_FINITE; HD_ERR_EMPTY (face or vertex: it has lost its area). After any
+ *        other error the plan has changed, and answers no query until an update succeeds
  * Cost   one pass over faces and entries, and the two factorisations */
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err);
 HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
@@ -1226,18 +1160,17 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
 /* The distance of every vertex to each source: to the nearest of its points, or to its curve.
  * sources  as in queries of heat, but weights and lengths are ignored. Points that are no vertices must lie
  *          in a face, its edges and corners included. Plans of polygons take vertices only
- * D        n x count in the unit of xyz: |phi - phi_s|, zero at vertices that are sources, HUGE_VAL in
- *          components without one and at vertices without mass. For several points phi_s is a mean weighted
- *          by their heat. The error is of the order of h: a few percent on coarse meshes, about one on fine
- *          ones, most where fronts meet and near a source; d(i, j) and d(j, i) differ by about that. Where a
- *          source is no vertex, D is exact at the corners of its faces
+ * D        n x count in the unit of xyz: |phi - phi_s|, with the mean phi_s of phi at the source's points,
+ *          weighted by heat; zero at vertices that are sources, HUGE_VAL in components without one and at
+ *          vertices without mass. Errors are of the order of h: a few percent on coarse meshes, about one on
+ *          fine ones; d(i, j) and d(j, i) differ by as much. Around a source that is no vertex, D is exact at
+ *          the corners of its faces
  * Errors   those of sources; HD_ERR_ARGUMENT (column, row): a point or a piece is in no face, or has a corner
  *          where heat is held at zero; HD_ERR_BREAKDOWN (rounding left no number); HD_WARN_ACCURACY, only if
  *          a report is given
- * Cost     two solves and two passes over the faces for each source; another solve with several points in a
- *          component, two more passes with a report, and a solve and three passes for every 450 edges or so
- *          at t = h^2, where heat fades. Eight vertices together are three times as fast. Calls with vertices
- *          alone allocate only if there are more than before */
+ * Cost     two solves and two passes over the faces for each source; a solve more with several points in a
+ *          component, and for every 450 edges or so at t = h^2; two passes more with a report. Eight vertices
+ *          together are three times as fast. Calls with no more vertices than before allocate nothing */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
@@ -18814,7 +18747,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
         next = INT32_MAX;
         for (i = first; i < l->n && l->n <= most; i++) {
             hdi_reached at = l->at[i];
-            const double along = at.way + hdi_local_edge(lap, at.row);
+            const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
             if (i == level_end) {
                 level++;
                 level_end = l->n;
@@ -21196,7 +21129,7 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
-#define HDI_PATCH_REACH 0.55
+#define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
 #define HDI_PATCH_ROW 7500
@@ -21584,6 +21517,38 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     *h->rep = rep;
     hdi_heat_free_factors(h->heat);
     return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
+}
+
+/* Are the entries asked for, in values [n_times][n], all of the diagonal, and are patches around their
+ * vertices the way to them? Then it is done. */
+static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
+                                  const int32_t *j, double *values) {
+    const hd_laplacian *lap = h->heat->source;
+    int may = HDI_HAS_DIAGONAL && n >= HDI_PATCH_LEAST && hdi_patches_can(h->heat);
+    int32_t *rows, q, v;
+    hdi_diagonals to;
+    hdi_patches x;
+    int64_t p;
+    for (p = 0; p < n && may; p++) may = i[p] == j[p];
+    for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
+    if (!may) return 0;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    to.mass = mass;
+    to.ldd = (size_t)lap->n;
+    to.D = HDI_TAKE_ZERO(&h->s, double, to.ldd * (uint64_t)h->ask.n_times);
+    to.rows = rows = HDI_TAKE(&h->s, int32_t, lap->n_active);
+    if (h->e->status < 0) return 1;
+    for (p = 0; p < n; p++) to.D[i[p]] = 1;
+    for (v = 0; v < lap->n; v++)
+        if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
+    if (to.n_rows < HDI_PATCH_LEAST) return 0;
+    x.to = &to;
+    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
+    else if (!hdi_patches_pay(&x) || hdi_patches_run(&x, HDI_PATCHES_PAY) < 0) return h->e->status < 0;
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
+        for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
+    return 1;
 }
 
 /* ==== [28] diffusion ====
@@ -24546,6 +24511,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
         hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
+    if (h.e->status >= 0 && hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
+        return hdi_heat_end(&h);
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }

@@ -453,6 +453,18 @@ static void loc_patches(const char *spec, hd_kernel kernel, const char *plan) {
             CHECK_MSG(fabs(Z[q] - Y[q]) <= bound[q] + sure[q] && bound[q] < 1e-5 * Z[q], "%s: trace %g of %g", spec, Z[q] - Y[q], bound[q]);
         }
         CHECK(hd_heat_diagonal(local, kernel, 2, t, NULL, 0, Y, NULL, &all, NULL) == HD_OK && all.method == HD_METHOD_LOCAL && all.error_local > 0);
+        if (lap->n > 3000) {                     /* every third vertex, twice, as entries */
+            const int32_t some = (n + 2) / 3;
+            int32_t *v = KIT_NEW(int32_t, 2 * some);
+            double *X = KIT_NEW(double, 4 * (int64_t)some);
+            for (i = 0; i < 2 * some; i++) v[i] = i % some * 3;
+            CHECK(hd_heat_entries(local, kernel, 2, t, 2 * some, v, v, X, &all, NULL) == HD_OK && all.method == HD_METHOD_LOCAL);
+            CHECK(!*plan || all.n_patches > 0);
+            for (i = 0; i < 4 * some; i++) {
+                const int32_t at = i / (2 * some) * n + v[i % (2 * some)];
+                if (!CHECK_MSG(fabs(X[i] - D[at]) <= (all.error_relative + rep.error_relative) * fabs(D[at]), "%s: entry %d", spec, (int)at)) break;
+            }
+        }
         for (q = 0; q < 2; q++) CHECK_MSG(fabs(Z[q] - Y[q]) <= 2 * bound[q], "%s: %g", spec, Z[q] - Y[q]);
     }
     ctx->byte_limit = 0;
