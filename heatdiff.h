@@ -1040,7 +1040,7 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
  *        local: patches that fit the byte limit; half the memory takes up to twice as long. Auto takes
- *        patches where they cost less, or where nothing else fits
+ *        patches where they cost less, or from 4096 rows on where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -20021,7 +20021,7 @@ static int hdi_direct_barred(const hd_heat *heat) {
     return heat->opts.method == HD_METHOD_ITERATIVE || heat->opts.method >= HD_METHOD_KRYLOV;
 }
 
-#define HDI_DIRECT_REASON "diagonals and distances to all vertices need the direct method or local"
+#define HDI_DIRECT_REASON "diagonals and distances to all need the direct method, or at a time local"
 
 /* Checks that the direct method is allowed, for queries that have no other. */
 static hd_status hdi_direct_only(hdi_heat_call *h) {
