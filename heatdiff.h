@@ -13037,7 +13037,7 @@ typedef struct hdi_lane {
     hdi_iteration *k;            /* [systems] */
     hdi_lanczos lanczos;
     int32_t skip;
-    int32_t exponent;            /* the field is the caller's times 2^-exponent */
+    int exponent;                /* the field is the caller's times 2^-exponent */
     int32_t dual;                /* what is asked for is B u, which goes to tmp in the end */
     double f_off, rhs_off;       /* what f, and B^-1 times the right-hand side, are off by in the B norm */
     /* outcome, norms absolute */
