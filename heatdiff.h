@@ -61,7 +61,7 @@
 
    Macros beside the implementation
      HEATDIFF_IMPLEMENTATION   compiles the implementation; define it in one file
-     HEATDIFF_ASSERT(x)        your own assert; default: assert() unless NDEBUG
+     HEATDIFF_ASSERT(x)        in place of assert(x)
      HEATDIFF_AUDIT            slow asserts as well; on under the address sanitizer
      HEATDIFF_MALLOC(size), HEATDIFF_FREE(p)
                                for contexts without an allocator; define both or none
@@ -71,8 +71,8 @@
      HEATDIFF_NO_THREADS       serial; set by itself without POSIX threads or Windows, or without atomics
      HEATDIFF_NO_LARGE_PAGES   no madvise for large pages on Linux
 
-   More of them make the build smaller. What is left out returns HD_ERR_NOT_BUILT, and HD_METHOD_AUTO chooses
-   among the rest; some error bounds are larger then, and what exceeds byte_limit may be an error.
+   For smaller builds. What is left out returns HD_ERR_NOT_BUILT, and HD_METHOD_AUTO chooses among the rest;
+   some error bounds are larger then, and what exceeds byte_limit may be an error.
      HEATDIFF_NO_DIRECT        factorisations: hd_ldl_*, method krylov; implies NO_LOCAL, NO_POLE_FACTORS,
                                NO_GEODESIC, NO_SPECTRUM
      HEATDIFF_NO_LOCAL         method local
@@ -87,7 +87,7 @@
      HEATDIFF_NO_POLYGONS      HD_POLYGONS
 
    Macros wherever the file is included, the same everywhere
-     HEATDIFF_STATIC           all functions are static, for a single file that uses them
+     HEATDIFF_STATIC           static functions, for use in one file
      HEATDIFF_API              your own linkage attribute
 
    Limits
@@ -101,7 +101,7 @@
      A context's own threads run from its first long work to the end of its last object, and sleep between
      calls. Results are the same to the last bit for any number of them. If each of your threads has a plan,
      set hd_context.n_threads = 1.
-     A forked child may use and free its parent's objects. Do not fork while another thread is in the library.
+     A forked child may use and free its parent's objects, if no other thread was in the library.
      With glibc older than 2.34 link with -lpthread, or all runs on one thread. On Windows the implementation
      includes windows.h.
 
@@ -978,8 +978,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
  *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
  *                 more than 1e100
- *        method:  HD_ERR_ARGUMENT. Diagonals, traces, samples and distances to all vertices need auto, direct
- *                 or local; distances by commute, biharmonic or a filter need auto or direct
+ *        method:  HD_ERR_ARGUMENT. Diagonals, samples and distances to all need auto, direct or local;
+ *                 commute, biharmonic or a filter auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
  * methods auto and direct take the few eigenpairs left.
  * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
