@@ -17,7 +17,7 @@
        #define HEATDIFF_IMPLEMENTATION                   #include "heatdiff.h"
        #include "heatdiff.h"
 
-   and link with -lm. The implementation compiles in about 12 s: give it a file of its own.
+   and link with -lm. It compiles in about 12 s: give it a file of its own.
 
        hd_laplacian *lap = NULL;  hd_heat *heat = NULL;  hd_error err;
        hd_mesh mesh = hd_triangles(xyz, n, tri, n_tri);
@@ -88,7 +88,7 @@
 
    Macros wherever the file is included, the same everywhere
      HEATDIFF_STATIC           static functions, for use in one file
-     HEATDIFF_API              your own linkage attribute
+     HEATDIFF_API              your linkage attribute
 
    Limits
      Vertices and faces are counted in 32 bits, non-zeros and offsets in 64. The library prints nothing, opens
@@ -99,13 +99,13 @@
      There is no global or thread-local state. An object or a context serves one thread at a time. Only a
      Laplacian may be shared, by threads whose plans (hd_heat) and spectra have a context each.
      A context's own threads run from its first long work to the end of its last object, and sleep between
-     calls. Results are the same to the last bit for any number of them. If each of your threads has a plan,
+     calls. Results are the same bits for any number of them. If each of your threads has a plan,
      set hd_context.n_threads = 1.
      A forked child may use and free its parent's objects, if no other thread was in the library.
      With glibc older than 2.34 link with -lpthread, or all runs on one thread. On Windows the implementation
      includes windows.h.
 
-   Licence: MIT or public domain, at your choice; see the end of the file. */
+   Licence: MIT or public domain; see the end of the file. */
 
 #ifndef HEATDIFF_H
 #define HEATDIFF_H
