@@ -1442,8 +1442,8 @@ kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} 
     {1} torus-80-50.obj --t 1h2,2h2 --method direct :: 1e-6
 distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {classical|weighted} --laplacian {fem|voronoi-cot} \
     --method local :: distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {1} --laplacian {2} --degree 14 :: 2e-9
-distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition {classical|weighted} --threads 1 --memory-limit 120M \
-    {--method local|} :: distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition {1} --degree 14 :: 2e-9
+distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --threads 1 --memory-limit 120M \
+    {--method local|} :: distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --degree 14 :: 2e-9
 sample --count 6 torus-80-50.obj --t 1h2 --source {7|7,3000|9:0.2,0.3} --definition {classical|weighted} --method local :: \
     sample --count 6 torus-80-50.obj --t 1h2 --source {1} --definition {2} --degree 14 :: 1e-9
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
@@ -1880,8 +1880,7 @@ kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2
 kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
 {hks|hks --kernel operator|trace} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 80M {|--method local} :: method=local \
     touched>500 touched<14000 patches>1 error_local>0 error_relative<1e-6
-{distance --source 7|distance --source 7 --definition weighted|sample --count 3} torus-150-100.obj --t 1h2 --threads 1 \
-    --memory-limit 120M {|--method local} :: method=local touched>500 touched<15000 patches>1 error_local>0 error_relative<1e-7
+{distance --source 7|sample --count 3 --method local} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 120M :: method=local touched>500 touched<15000 patches>1 error_local>0 error_relative<1e-7
 {distance --source 7,3000|sample --count 3} torus-80-50.obj --t 1h2 --method local :: touched=4000 patches=1 degree=14
 kernel torus-80-50.obj --source 1,2 --method iterative --t {30h2 :: times#1|3h2,30h2 :: times#2} mass_drift<1e-9
 {hks|distance --source 1,2|sample --count 3} patch-9.off --t 3h2 :: times#1 n=100 lost=0 error_relative<1e-3 smallest>0
