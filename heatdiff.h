@@ -18932,6 +18932,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     if (!ball) return e->status;
     if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
         own->source = own->elim.source = own->few.source = ball;
+        own->opts.tol = heat->opts.tol;
     } else {
         hdi_local_drop(l);
         own->opts = heat->opts;
@@ -20761,7 +20762,7 @@ typedef struct hdi_diagonals {
     double *D;                   /* [n n_times], columns ldd apart; NULL: not wanted */
     size_t ldd;
     double *Z, *bound;           /* [n_times] traces of K_t; NULL: not wanted */
-    int32_t n_rows, degree;      /* patches; degree 0: as usual */
+    int32_t n_rows;              /* patches */
     const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
 
@@ -21324,11 +21325,13 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
     return hdi_scope_end(&s);
 }
 
-/* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. */
+/* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
+ * falls with time it is that of the earlier one. */
 static double hdi_patch_rate(const double *r, double s) {
     const int32_t m = s < hdi_patch_time[1];
     const double from = 1 / hdi_patch_time[m], to = 1 / hdi_patch_time[m + 1];
-    return r[m] * pow(hdi_min(1, hdi_quotient(r[m + 1], r[m])), (1 / s - from) / (to - from));
+    if (r[m + 1] >= r[m]) return r[m + 1];
+    return r[m] * pow(r[m + 1] / r[m], (1 / s - from) / (to - from));
 }
 
 /* The double integral over t^2. Where one of both times is beyond half of t, the other is not, and the rate
@@ -21390,7 +21393,6 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
     const uint64_t n = (uint64_t)h->ask.n_times, values = to.D ? n * (uint64_t)x->local->n : 0;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
-    own->opts.degree = to.degree ? to.degree : h->heat->opts.degree;
     to.ldd = (size_t)x->local->n;
     to.D = HDI_TAKE(&s, double, values + 2 * n);
     if (h->e->status < 0) return hdi_scope_end(&s);
@@ -21682,8 +21684,21 @@ static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_
     return x->h->e->status;
 }
 
-/* Distances by patches and balls: as much cancels, little may be left out, and poles are of the highest
- * degree. */
+/* The kernel whose columns serve a kind. */
+static hd_kernel hdi_distance_kernel(const hdi_distance_row *kind) {
+    return kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+}
+
+/* Takes the bounds out of a report: those of what is made of its answers come instead. */
+static void hdi_report_unbound(hd_report *rep) {
+    rep->error_bound = rep->error_rational = rep->error_solver = rep->error_rounding = 0;
+    rep->error_relative = rep->smallest = rep->error_local = 0;
+    rep->error_bound_b = HUGE_VAL;
+    rep->evidence_b = HD_EVIDENCE_NONE;
+}
+
+/* Distances by patches and balls: as much cancels, little may be left out. With such a tolerance poles are of
+ * the highest degree. */
 #define HDI_METRIC_TOL 1e-12
 
 /* The diagonal by patches at the time under way, in the order of the source's rows. A column's errors are the
@@ -21694,6 +21709,7 @@ static hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_d
     const double t = kind->time * h->ask.t[h->now];
     hdi_diagonals to;
     hdi_heat_call d;
+    hd_report rest;
     int32_t i;
     memset(x, 0, sizeof *x);
     memset(&to, 0, sizeof to);
@@ -21714,7 +21730,6 @@ static hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_d
         hdi_times_check(&d, 1, &t, 1) >= 0) {
         to.task.h = &d;
         to.mass = kind->mass;
-        to.degree = hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
         (void)hdi_diagonals_by_patches(&to, h->rep->reason);
     }
     if (hdi_heat_end(&d) < 0) *h->e = local->error;
@@ -21725,8 +21740,9 @@ static hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_d
         x->f.spread[i] = size * size;
     }
     *x->rounding = local->error_relative;
-    local->error_relative = local->smallest = 0;
-    if (h->e->status >= 0) hdi_report_merge(h->rep, local);
+    rest = *local;
+    hdi_report_unbound(&rest);
+    if (h->e->status >= 0) hdi_report_merge(h->rep, &rest);
     return h->e->status;
 }
 
@@ -21815,8 +21831,8 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
     hdi_heat_call c;
     hd_report rep;
     int32_t i;
-    if (hdi_kernel_begin(&c, x->h->heat, x->kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC, &rep,
-                         NULL) >= 0 && hdi_times_check(&c, 1, &t, 1) >= 0) {
+    if (hdi_kernel_begin(&c, x->h->heat, hdi_distance_kernel(x->kind), &rep, NULL) >= 0 &&
+        hdi_times_check(&c, 1, &t, 1) >= 0) {
         c.ask.k = 1;
         c.ask.terms = source;
         c.ask.U = x->work;
@@ -21829,6 +21845,7 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
     }
     x->off->by_m = HUGE_VAL;
     x->off->by_b = most * rep.error_bound;
+    x->h->rep->n_touched = hdi_high32(x->h->rep->n_touched, rep.n_touched);
     hdi_report_merge(x->local, &rep);
     hdi_metric_finish(x, source, 0, x->rows.sum);
     return HD_OK;
@@ -21842,7 +21859,7 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
     if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
     memset(&c, 0, sizeof c);
-    c.kernel = x->f.mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    c.kernel = hdi_distance_kernel(x->kind);
     c.set = x->in.set;
     c.k = k;
     c.terms = source;
@@ -22339,7 +22356,7 @@ static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_repo
 
 /* Some pairs at the time under way from columns. */
 static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_kernel kernel = to->of.kind->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
+    const hd_kernel kernel = hdi_distance_kernel(to->of.kind);
     hdi_heat_call *h = to->of.task.h, c;
     const hd_laplacian *lap = h->heat->source;
     const uint64_t n = (uint64_t)lap->n;
@@ -22383,10 +22400,7 @@ static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
         if (hdi_pairs_some(to, &x, &one, &all) < 0) return h->e->status;
         hdi_report_merge(&sum, &one);
     }
-    sum.error_bound = sum.error_rational = sum.error_solver = sum.error_rounding = 0;
-    sum.error_relative = sum.smallest = sum.error_local = 0;
-    sum.error_bound_b = HUGE_VAL;
-    sum.evidence_b = HD_EVIDENCE_NONE;
+    hdi_report_unbound(&sum);
     *h->rep = sum;
     hdi_ledger_close(&all, h->rep);
     return h->e->status;
