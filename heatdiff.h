@@ -9659,15 +9659,21 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
     f->ctx = s->ctx;
 }
 
-/* The same, to keep. */
+/* The same, to keep: the blocks leave the scope. */
+static hd_status hdi_factor_keep(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
+                                 int32_t width, hdi_scope *s) {
+    hdi_factor_take(f, host, sym, width, s);
+    f->n_blocks = s->n;
+    memcpy(f->block, s->block, sizeof f->block);
+    s->n = 0;
+    if (s->e->status < 0) hdi_factor_free(f);
+    return s->e->status;
+}
+
 static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
                                  int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_factor_take(f, host, sym, width, &s);
-    f->n_blocks = s.n;
-    memcpy(f->block, s.block, sizeof f->block);
-    if (e->status < 0) hdi_factor_free(f);
-    return e->status;
+    return hdi_factor_keep(f, host, sym, width, &s);
 }
 
 static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
@@ -11519,17 +11525,17 @@ static hd_status hdi_iteration_run(hdi_iteration *k, const hd_c64 *b, double tar
 
 /* ---- conjugate gradients for B u = w, with the diagonal as preconditioner ---- */
 
-/* The error of u in the B norm, relative to u and times sqrt(b_ratio), as measured. The recurrence stops when
- * r'z has come down by HDI_MASS_STOP, the square of a tenth of it. */
+/* The error of u in the B norm, relative to u and times sqrt(b_ratio), as measured, where r'z has come down
+ * by HDI_MASS_STOP, the square of a tenth of it. */
 #define HDI_MASS_TOL 1e-14
 #define HDI_MASS_STOP 1e-30
-#define HDI_MASS_FAILED 1e-24    /* of r'z after HDI_MASS_STEPS: not converged */
+#define HDI_MASS_FAILED 1e6      /* times that after HDI_MASS_STEPS: not converged */
 enum { HDI_MASS_STEPS = 1000 };
 
-/* B u = w. For linear elements the condition number of diag(B)^-1 B is at most 4, and some 30 steps lead
- * to the level of rounding. work [3 n]. */
-static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double *u, double *work,
-                                hd_error *e) {
+/* B u = w, until r'z has come down by `stop`. For linear elements the condition number of diag(B)^-1 B is at
+ * most 4, and some 30 steps lead to the level of rounding. work [3 n]. */
+static hd_status hdi_mass_solve(const hd_laplacian *lap, double stop, const double *w, double *u,
+                                double *work, hd_error *e) {
     const int32_t n = lap->n_active;
     double *r = work, *p = work + n, *q = work + 2 * (int64_t)n, rho = 0, rho_new, start;
     int32_t i, step;
@@ -11544,7 +11550,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
         rho += r[i] * p[i];
     }
     start = rho;
-    for (step = 0; step < HDI_MASS_STEPS && rho > HDI_MASS_STOP * start; step++) {
+    for (step = 0; step < HDI_MASS_STEPS && rho > stop * start; step++) {
         double alpha, mu;
         hdi_pair_apply(lap, 0, 1, p, q);
         mu = hdi_dot(p, q, n);
@@ -11564,7 +11570,7 @@ static hd_status hdi_mass_solve(const hd_laplacian *lap, const double *w, double
     if (!hdi_finite(rho) || !hdi_finite(start))
         return hdi_fail(e, HD_ERR_BREAKDOWN,
                         "conjugate gradients on B leave the range of doubles: masses differ too much");
-    if (rho > HDI_MASS_FAILED * start)
+    if (rho > HDI_MASS_FAILED * stop * start)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "conjugate gradients on B did not converge");
     return HD_OK;
 }
@@ -13332,6 +13338,8 @@ typedef struct hdi_elim {
     hdi_symbolic sym;
     hdi_factor *pack, real, shifted;     /* pack [HD_MAX_POLES/4] */
     int32_t n_packs, n_used;     /* packs that have room; packs of the set */
+    char *room, *rest;           /* of the caller's, for packs and inversion; what packs leave; NULL: none */
+    uint64_t left, rest_left;    /* bytes of both */
     int32_t filled;              /* 1: they hold set and t */
     int32_t lone;                /* pole in the real factor, -1 none */
     hd_rational set;
@@ -13455,6 +13463,7 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
     const int there = hdi_elim_holds(m, set, t);
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
     int32_t i, q;
     m->set = *set;                               /* weights cost nothing */
     if (there) return HD_OK;
@@ -13463,9 +13472,14 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     m->t = t;
     m->lone = hdi_set_lone(set) ? 0 : -1;
     m->n_used = hdi_set_packs(set);
+    s.room = m->n_packs == 0 ? m->room : NULL;
+    s.left = s.room ? m->left : 0;
     for (; m->n_packs < m->n_used; m->n_packs++)
-        if (hdi_factor_make(m->pack + m->n_packs, m->pack, &m->sym, HDI_PACK, m->ctx, e) < 0)
-            return e->status;
+        if (hdi_factor_keep(m->pack + m->n_packs, m->pack, &m->sym, HDI_PACK, &s) < 0) return e->status;
+    if (s.room) {
+        m->rest = s.room;
+        m->rest_left = s.left;
+    }
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
@@ -13930,6 +13944,8 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
+    s.room = m->rest;
+    s.left = m->rest_left;
     hdi_inverse_take(&z, &m->sym, width, &s);
     z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
     if (forms) {
@@ -14063,6 +14079,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
     hdi_factor f;
     hdi_inverse z;
     int32_t i;
+    kept.left = m->n_packs == 0 ? m->left : 0;
     for (i = m->n_packs; i < packs; i++)
         hdi_factor_take(&f, i > 0 ? m->pack : NULL, &m->sym, HDI_PACK, &kept);
     if (lone && !m->real.ctx) hdi_factor_take(&f, NULL, &m->sym, 1, &kept);
@@ -14071,7 +14088,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
         hdi_scope s = hdi_scope_counting();
         const int32_t width = i == 0 ? 1 : HDI_PACK;
         if (bound ? i : !(i == 0 ? lone : packs)) continue;
-        s.left = bound ? hdi_elim_room(m, packs) : 0;
+        s.left = bound ? hdi_elim_room(m, packs) : m->n_packs > 0 ? m->rest_left : kept.left;
         if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
         hdi_inverse_take(&z, &m->sym, width, &s);
         if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
@@ -14227,7 +14244,7 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
     if (lap->B) {
         hdi_axpy(-alpha, c, w, n);
-        if (hdi_mass_solve(lap, w, v, mass, e) < 0) return e->status;
+        if (hdi_mass_solve(lap, HDI_MASS_STOP, w, v, mass, e) < 0) return e->status;
         norm = hdi_dot(w, v, n);
     } else {                                     /* the same in one pass */
         for (i = 0; i < n; i++) {
@@ -17693,7 +17710,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         else hdi_lane_terms_mass(lap, &c, lane);
         if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
-    } else if (hdi_mass_solve(lap, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
+    } else if (hdi_mass_solve(lap, HDI_MASS_STOP, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
         return h->e->status;
     }
     hdi_heat_measure(lap, lane);
@@ -19890,7 +19907,7 @@ static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_noise_weights(lap, unit, 0, noise, noise + lap->n_active);
     for (i = 0; i < lap->n_active; i++) sum += noise[i] * lane->f[i] * lane->f[i];
     hdi_pair_apply(lap, -unit, 0, lane->f, w);
-    if (hdi_mass_solve(lap, w, lane->u, noise, h->e) < 0) return;
+    if (hdi_mass_solve(lap, HDI_MASS_STOP, w, lane->u, noise, h->e) < 0) return;
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_ratio_root(lap) *
                             (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm));
@@ -21122,34 +21139,37 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * q being the rows of the rim (Duhamel's formula, once for each way). The r(s) of all x of a core are
  * measured at once: by symmetry they are what k_s makes of random functions on the rim. */
 
-/* Random functions; times at which they are taken, relative to t; these and an integral; steps of
- * integrals. */
-enum { HDI_PATCH_PROBES = 8, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4, HDI_PATCH_STEPS = 32 };
+/* Random functions, in all and at a time; times at which they are taken, relative to t; these and an
+ * integral; steps of integrals. */
+enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4,
+       HDI_PATCH_STEPS = 32 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
 enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
+/* Of hdi_mass_solve: a hundredth of the functions. */
+#define HDI_PATCH_STOP 1e-4
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
-#define HDI_PATCH_ROW 7500
+#define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 2600
 /* Bytes of a patch for each number of its real factor, as measured: four complex factors and the rest. */
-#define HDI_PATCH_BYTES 250
+#define HDI_PATCH_BYTES 170
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t count, stamp;        /* of pieces; of marks */
+    int32_t stamp;               /* of marks */
+    int32_t core, most;          /* pieces have so many rows at most, patches fewer than most */
+    int32_t done;                /* pieces that are answered */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
+    char *room;                  /* for the factors of one patch after the other: fresh memory is dear */
+    uint64_t bytes;              /* of it */
 } hdi_patches;
-
-static int32_t hdi_patch_begin(const hdi_patches *x, int32_t count, int32_t p) {
-    return (int32_t)((int64_t)x->n * p / count);
-}
 
 /* Orders the rows of a piece breadth-first from the first of them, without leaving the piece. */
 static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
@@ -21172,28 +21192,22 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Halves each of the pieces, after ordering it breadth-first from a row at its end. */
-static void hdi_patch_halve(hdi_patches *x) {
-    int32_t p;
-    for (p = 0; p < x->count; p++) {
-        const int32_t begin = hdi_patch_begin(x, x->count, p);
-        const int32_t n = hdi_patch_begin(x, x->count, p + 1) - begin;
-        hdi_patch_walk(x, x->row + begin, n);
-        if (n > 0) {
-            const int32_t last = x->row[begin + n - 1];
-            x->row[begin + n - 1] = x->row[begin];
-            x->row[begin] = last;
-        }
-        hdi_patch_walk(x, x->row + begin, n);
-    }
-    x->count *= 2;
+/* Cuts what is to become so many pieces in two, after ordering it breadth-first from a row at its end.
+ * Returns where the second part begins. */
+static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
+    int32_t last;
+    hdi_patch_walk(x, x->row + begin, end - begin);
+    last = x->row[end - 1];
+    x->row[end - 1] = x->row[begin];
+    x->row[begin] = last;
+    hdi_patch_walk(x, x->row + begin, end - begin);
+    return begin + (int32_t)((int64_t)(end - begin) * (pieces / 2) / pieces);
 }
 
-/* Finds piece p of `count` with its margin; stops beyond `most` rows. */
-static hd_status hdi_patch_find(hdi_patches *x, int32_t count, int32_t p, int32_t most) {
+/* Finds a piece with its margin; stops beyond `most` rows. */
+static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
     const hd_laplacian *lap = h->heat->source;
-    const int32_t begin = hdi_patch_begin(x, count, p), end = hdi_patch_begin(x, count, p + 1);
     double edge = 0;
     int32_t i;
     hdi_local_clear(x->local, lap);
@@ -21206,44 +21220,51 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t count, int32_t p, int32_
                           most, h->heat->ctx, h->e);
 }
 
-/* Halves pieces until factors of patches fit, and further while that makes less work. Returns the flops of
+/* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
  * all patches less those of the whole mesh. */
 static double hdi_patch_cut(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active;
     const double wide = (double)h->heat->source->L.nnz / n;
     double least = HUGE_VAL;
-    int32_t best = 1;
+    int32_t begin = 0, end = x->n, middle;
     for (;;) {
         hdi_fill f;
-        double cost;
-        if (hdi_patch_find(x, x->count, x->count / 2, INT32_MAX) < 0) return 0;
+        double cost, more;
+        if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return 0;
         f = hdi_fill_guess(x->local->n, x->local->n * wide);
-        cost = x->count * (f.flops + HDI_PATCH_ROW * (double)x->local->n);
-        if (HDI_PATCH_BYTES * f.stored < hdi_bytes_left(h->heat->ctx) && cost < least) {
+        cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
+        more = hdi_bytes_left(h->heat->ctx) / (HDI_PATCH_BYTES * f.stored);
+        if (more > 1 && cost < least) {
+            /* where the limit makes pieces small they have as many rows as fit: margins stay as wide */
+            const double core = end - begin, margin = sqrt(x->local->n) - sqrt(core);
+            const double side = least < HUGE_VAL ? 0 : sqrt(more * x->local->n) - margin;
             least = cost;
-            best = x->count;
+            x->core = (int32_t)hdi_max(core, hdi_min(side * side, 1.9 * core));
         } else if (least < HUGE_VAL) {
             break;
         }
-        if (x->n / x->count < 2 * HDI_PATCH_LEAST) break;
-        hdi_patch_halve(x);
+        if (end - begin < 2 * HDI_PATCH_LEAST) break;
+        middle = hdi_patch_halve(x, begin, end, 2);
+        if (begin == 0) begin = middle;          /* pieces inside the mesh have margins all around */
+        else end = middle;
     }
-    x->count = best;
+    if (least == HUGE_VAL) x->core = end - begin;
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
-/* Random functions on the rim, as functionals C [n] each that k_s applies to: with c = L w and c' = B w on
- * the patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
-static hd_status hdi_patch_probes(const hdi_local *l, double *C, double *work, hd_error *e) {
+/* Random functions on the rim from number q on, as functionals C [n] each that k_s applies to: with c = L w
+ * and c' = B w on the patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
+static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, double *work, hd_error *e) {
     const hd_laplacian *lap = l->ball;
     const hdi_rim *rim = &l->rim;
     const int64_t n = lap->n;
     double *u = work, *v = u + n, *rest = v + n;
+    const int32_t end = q + HDI_PATCH_BLOCK;
     uint64_t seed;
-    int32_t q, i;
-    memset(C, 0, HDI_PATCH_PROBES * (size_t)n * sizeof *C);
-    for (q = 0; q < HDI_PATCH_PROBES && e->status >= 0; q++, C += n) {
+    int32_t i;
+    memset(C, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *C);
+    for (; q < end && e->status >= 0; q++, C += n) {
         memset(u, 0, (size_t)n * sizeof *u);
         for (i = 0; i < rim->n_edges; i++) {
             double w;
@@ -21252,7 +21273,7 @@ static hd_status hdi_patch_probes(const hdi_local *l, double *C, double *work, h
             C[rim->from[i]] += rim->l[i] * w;
             u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
         }
-        if (!rim->b || hdi_mass_solve(lap, u, v, rest, e) < 0) continue;
+        if (!rim->b || hdi_mass_solve(lap, HDI_PATCH_STOP, u, v, rest, e) < 0) continue;
         hdi_pair_apply(lap, 1, 0, v, u);
         for (i = 0; i < n; i++) C[i] -= u[i];
     }
@@ -21279,49 +21300,51 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
 /* r(s) at the times, and last its integral until half of t, over t: for the x among the first `count`
  * vertices where it is largest, from the poles that the inversion takes. */
 static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_t count, double *r) {
+    enum { ROWS = HDI_PATCH_ROWS };
     const hdi_local *l = x->local;
     const int32_t n = l->n;
     hdi_scope s = hdi_scope_begin(in->heat->ctx, in->e);
-    double *C = HDI_TAKE(&s, double, HDI_PATCH_PROBES * (uint64_t)n);
-    double *U = HDI_TAKE(&s, double, HDI_PATCH_PROBES * HDI_PATCH_ROWS * (uint64_t)n);
+    double *C = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n);
+    double *U = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * ROWS * (uint64_t)n);
+    double *sum = HDI_TAKE_ZERO(&s, double, ROWS * (uint64_t)n);
     double *work = HDI_TAKE(&s, double, hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) +
                                         3 * HDI_RESOLVENT_POINTS);
-    int32_t *id = HDI_TAKE(&s, int32_t, n), i, q, m;
-    hd_c64 weight[HDI_PATCH_ROWS][HD_MAX_POLES];
-    hdi_terms terms[HDI_PATCH_PROBES];
+    int32_t *id = HDI_TAKE(&s, int32_t, n), i, j, q;
+    hd_c64 weight[ROWS][HD_MAX_POLES];
+    hdi_terms terms[HDI_PATCH_BLOCK];
     hd_rational set;
     hdi_columns c;
     in->t = hdi_heat_scaled(in->heat, x->t);
-    if (in->e->status < 0 || hdi_patch_probes(l, C, U, in->e) < 0 ||
-        hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, &set) < 0) return hdi_scope_end(&s);
+    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, &set) < 0)
+        return hdi_scope_end(&s);
     for (i = 0; i < n; i++) id[i] = i;
-    for (q = 0; q < HDI_PATCH_PROBES; q++) {
+    for (q = 0; q < HDI_PATCH_BLOCK; q++) {
         terms[q].n = n;
         terms[q].vertex = id;
         terms[q].weight = C + (int64_t)q * n;
     }
-    for (m = 0; m < HDI_PATCH_ROWS; m++) hdi_patch_weights(&set, m, work, weight[m]);
+    for (q = 0; q < ROWS; q++) hdi_patch_weights(&set, q, work, weight[q]);
     memset(&c, 0, sizeof c);
     c.kernel = HD_KERNEL_SYMMETRIC;
     c.set = &set;
-    c.k = HDI_PATCH_PROBES;
+    c.k = HDI_PATCH_BLOCK;
     c.terms = terms;
-    c.rows.n = HDI_PATCH_ROWS;
+    c.rows.n = ROWS;
     c.rows.stride = HD_MAX_POLES;
     c.rows.weight = *weight;
     c.rows.sum = U;
-    if (hdi_direct_columns(in, &c) < 0) return hdi_scope_end(&s);
-    for (m = 0; m < HDI_PATCH_ROWS; m++) {
-        for (i = 0, r[m] = 0; i < n; i++) {
-            double sum = 0;
-            if (in->heat->elim.lap->vertex[i] >= count) continue;
-            for (q = 0; q < HDI_PATCH_PROBES; q++) {
-                const double u = in->heat->scale * U[(int64_t)(q * HDI_PATCH_ROWS + m) * n + i];
-                sum += u * (u / (double)HDI_PATCH_PROBES);
+    for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
+        if (hdi_patch_probes(l, q, C, U, in->e) < 0 || hdi_direct_columns(in, &c) < 0) break;
+        for (j = 0; j < HDI_PATCH_BLOCK * ROWS; j++)
+            for (i = 0; i < n; i++) {
+                const double u = in->heat->scale * U[(int64_t)j * n + i];
+                sum[(int64_t)(j % ROWS) * n + i] += u * (u / (double)HDI_PATCH_PROBES);
             }
-            r[m] = hdi_max(r[m], sqrt(sum));
-        }
     }
+    for (q = 0; q < ROWS; q++)
+        for (i = 0, r[q] = 0; i < n && in->e->status >= 0; i++)
+            if (in->heat->elim.lap->vertex[i] < count)
+                r[q] = hdi_max(r[q], sqrt(sum[(int64_t)q * n + i]));
     return hdi_scope_end(&s);
 }
 
@@ -21367,6 +21390,31 @@ static double hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t cor
     return hdi_bound_of(HDI_PATCH_SAFETY * x->t * x->t * hdi_patch_integral(r) / lap->b_ratio);
 }
 
+/* Room for factors of a patch, and if it is easily there for their inversion: that of patches before if it is
+ * large enough. */
+static hd_status hdi_patch_room(hdi_patches *x, hd_heat *own) {
+    hd_context *ctx = own->ctx;
+    hd_error *e = x->to->task.h->e;
+    hdi_scope need = hdi_scope_counting();
+    hdi_factor f;
+    hdi_inverse z;
+    if (hdi_heat_analysed(own, e) < 0) return e->status;
+    hdi_factor_take(&f, NULL, &own->elim.sym, HDI_PACK, &need);
+    if (x->bytes < need.bytes) {
+        hdi_free(ctx, x->room);
+        x->bytes = 0;
+        if ((double)need.bytes < hdi_bytes_left(ctx) / 4) {
+            hdi_inverse_take(&z, &own->elim.sym, HDI_PACK, &need);
+            need.bytes += need.bytes / 8;
+        }
+        x->room = HDI_NEW(ctx, char, need.bytes, e);
+        x->bytes = x->room ? need.bytes : 0;
+    }
+    own->elim.room = x->room;
+    own->elim.left = x->bytes;
+    return e->status;
+}
+
 /* Gives the core's values to the caller, D [n_times][n] and traces with bounds. first: of all pieces. */
 static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
                            const double *bound, int first) {
@@ -21383,9 +21431,9 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
     }
 }
 
-/* Piece p with the margin that it has. Values go to the caller if they leave out no more than `wanted`. */
-static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, hd_report *rep) {
-    const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
+/* The piece of the first `core` rows of the patch. Values go to the caller if they leave out no more than
+ * `wanted`. */
+static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_report *rep) {
     hdi_heat_call *h = x->to->task.h, in;
     hd_heat *own = &x->local->heat;
     hdi_diagonals to = *x->to;
@@ -21404,30 +21452,35 @@ static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, 
         in.core = core;
         in.method = HD_METHOD_DIRECT;
         in.diagonal = 1;
-        in.left_out = hdi_patch_off(x, &in, core) / own->scale;
+        if (hdi_patch_room(x, own) >= 0) in.left_out = hdi_patch_off(x, &in, core) / own->scale;
         if (in.e->status >= 0) (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
-    else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound, p == 0);
+    else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound, x->done == 0);
     return hdi_scope_end(&s);
 }
 
-/* Piece p. Its margin grows until as little is left out as of columns. */
-static hd_status hdi_patch_run(hdi_patches *x, int32_t p) {
+/* A piece. Its margin grows until as little is left out as of columns. */
+static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    const int32_t most = end - begin < 2 * HDI_PATCH_LEAST ? INT32_MAX : x->most;
     hd_report rep;
     int32_t tries;
-    for (tries = 1; hdi_patch_find(x, x->count, p, INT32_MAX) >= 0; tries++) {
-        if (hdi_patch_once(x, p, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0) return h->e->status;
+    for (tries = 1; hdi_patch_find(x, begin, end, most) >= 0; tries++) {
+        if (x->local->n >= most) return hdi_fail(h->e, HD_ERR_MEMORY_LIMIT, "a patch is too large");
+        if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0)
+            return h->e->status;
         if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
         x->reach = hdi_local_more(x->reach, tries - 1, rep.error_local / wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
     rep.n_touched = x->local->n;
-    if (h->e->status >= 0) hdi_report_merge(h->rep, &rep);
-    return h->e->status;
+    if (h->e->status < 0) return h->e->status;
+    hdi_report_merge(h->rep, &rep);
+    x->done++;
+    return HD_OK;
 }
 
 /* Room for pieces of all rows, or of those wanted. */
@@ -21438,7 +21491,8 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     memset(x, 0, sizeof *x);
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
-    x->count = 1;
+    x->core = x->n;
+    x->most = INT32_MAX;
     x->reach = 1;
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
@@ -21455,32 +21509,47 @@ static int hdi_patches_pay(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
     if (n < HDI_PATCH_FROM || hdi_patches_open(x, x->to) < 0) return 0;
-    return hdi_patch_find(x, x->n, x->n / 2, most) >= 0 && x->local->n <= most && hdi_patch_cut(x) < 0;
+    return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
+           hdi_patch_cut(x) < 0;
 }
 
-/* Diagonals and traces by patches. Where one exceeds the byte limit, all that are left are halved. */
+static void hdi_patches_free(hdi_patches *x) {
+    hd_heat *heat = x->to->task.h->heat;
+    hdi_local_free(heat);
+    hdi_free(heat->ctx, x->room);
+    x->room = NULL;
+    x->bytes = 0;
+}
+
+/* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
+static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
+    hdi_heat_call *h = x->to->task.h;
+    int32_t middle;
+    if (end - begin <= x->core) {
+        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0) return h->e->status;
+        if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
+        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+        hdi_error_clear(h->e);
+        x->most = hdi_low32(x->most, x->local->n);
+        hdi_patches_free(x);
+        x->local = hdi_local_open(h->heat, h->e);
+        if (h->e->status < 0) return h->e->status;
+    }
+    middle = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
+    return hdi_patches_range(x, begin, middle) < 0 ? h->e->status : hdi_patches_range(x, middle, end);
+}
+
+/* Diagonals and traces by patches. */
 static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
     const hdi_diagonals *to = x->to;
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
-    int32_t p = 0, q, v;
+    int32_t q, v;
     h->relative = 1;
     h->rep->reason = reason;
-    while (p < x->count && hdi_progress(h->heat->ctx, "invert", (double)p / x->count, h->e) >= 0) {
-        if (hdi_patch_run(x, p) >= 0) {
-            p++;
-            continue;
-        }
-        if (!hdi_over_limit(h->heat->ctx, h->e) || x->n / x->count < 2 * HDI_PATCH_LEAST) break;
-        hdi_error_clear(h->e);
-        hdi_local_free(h->heat);
-        x->local = hdi_local_open(h->heat, h->e);
-        if (h->e->status < 0) break;
-        hdi_patch_halve(x);
-        p *= 2;
-    }
-    h->rep->n_patches = x->count;
-    hdi_local_free(h->heat);
+    (void)hdi_patches_range(x, 0, x->n);
+    hdi_patches_free(x);
+    h->rep->n_patches = x->done;
     for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
         for (v = 0; v < lap->n; v++)
             if (lap->row[v] < 0)

@@ -1157,7 +1157,7 @@ static void int_exp_rest(void) {
 static void int_patches(void) {
     static const double reaches[4] = {0.15, 0.3, 0.5, 0.7};
     static const char *const specs[3] = {"flat/40/40/0.3 fem", "bumpy/4/1 vor", "flat/40/40/0.3 fem+id"};
-    int32_t k, r, p, q, v;
+    int32_t k, r, p, q, v, cut[5] = {0};
     for (k = 0; k < 3; k++) {
         const hd_laplacian *lap = kit_pair(specs[k]);
         const double t[2] = {5 * trial_unit(lap), 2 * trial_unit(lap)};
@@ -1178,11 +1178,16 @@ static void int_patches(void) {
             to.Z = traces;
             to.bound = sure;
             CHECK(hdi_patches_open(&x, &to) >= 0);
-            for (q = 0; q < 2; q++) hdi_patch_halve(&x);
+            cut[4] = x.n;
+            cut[2] = hdi_patch_halve(&x, 0, x.n, 4);
+            cut[1] = hdi_patch_halve(&x, 0, cut[2], 2);
+            cut[3] = hdi_patch_halve(&x, cut[2], x.n, 2);
             x.reach = reaches[r];
-            for (p = 0; p < x.count; p++) {
-                int32_t core = hdi_patch_begin(&x, x.count, p + 1) - hdi_patch_begin(&x, x.count, p), i;
-                CHECK(hdi_patch_find(&x, x.count, p, INT32_MAX) >= 0 && hdi_patch_once(&x, p, HUGE_VAL, &rep) >= 0);
+            for (p = 0; p < 4; p++) {
+                int32_t core = cut[p + 1] - cut[p], i;
+                x.done = p;
+                CHECK(core >= lap->n / 4 && hdi_patch_find(&x, cut[p], cut[p + 1], INT32_MAX) >= 0);
+                CHECK(hdi_patch_once(&x, core, HUGE_VAL, &rep) >= 0);
                 CHECK(x.local->n < lap->n && rep.error_local > 0);
                 CHECK_MSG(rep.error_bound > 0.01 || rep.error_relative < 8 * rep.error_bound, "%s: the margin counts: %g", specs[k], rep.error_relative / rep.error_bound);
                 CHECK(p == 0 || !hdi_finite(sure[0]) || sure[0] > early);
@@ -1202,16 +1207,17 @@ static void int_patches(void) {
             if (!lap->B)
                 for (q = 0; q < 2; q++) CHECK_MSG(fabs(traces[q] - sum[q]) < 1e-9 * sum[q], "%s: %g", specs[k], traces[q] - sum[q]);
             for (q = 0; q < 2; q++) CHECK(fabs(traces[q] - Z[q]) <= sure[q] + 1e-5 * Z[q]);
-            CHECK(hdi_patch_run(&x, 0) >= 0 && x.reach > reaches[r] && h.rep->error_local <= 100 * 1e-10);
+            CHECK(hdi_patch_run(&x, 0, cut[1]) >= 0 && x.reach > reaches[r] && h.rep->error_local <= 100 * 1e-10);
             x.t = 1000 * t[0];                   /* all heat has left long before */
             x.reach = 1e-3;
-            CHECK(hdi_patch_find(&x, x.count, 1, INT32_MAX) >= 0 && hdi_local_plan(heat, x.local, h.e) >= 0);
+            CHECK(hdi_patch_find(&x, cut[1], cut[2], INT32_MAX) >= 0 && hdi_local_plan(heat, x.local, h.e) >= 0);
             CHECK(hdi_kernel_begin(&in, &x.local->heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0);
             in.method = HD_METHOD_DIRECT;
             in.diagonal = 1;
-            off = hdi_patch_off(&x, &in, hdi_patch_begin(&x, x.count, 2) - hdi_patch_begin(&x, x.count, 1));
+            off = hdi_patch_off(&x, &in, cut[2] - cut[1]);
             CHECK_MSG(off > 1 / lap->component_mass[0], "%s: %g of %g", specs[k], off * lap->component_mass[0], reaches[r]);
             CHECK(hdi_heat_end(&in) >= 0);
+            hdi_patches_free(&x);
             (void)hdi_heat_end(&h);
         }
         CHECK_MSG(tightest < 2e4, "%s: bounds are %g times as large as errors", specs[k], tightest);
