@@ -1130,8 +1130,7 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
  * t        as in the query; spectrum: n_times may be 0
  * k        see hd_query
  * estimate too little memory is no error: fits is 0. Bytes leave out the output arrays. They bound the need
- *          of the direct method within a few percent; for others they are estimates, for patches unknown
- * Errors   HD_ERR_ARGUMENT: diagonals, or distances to all, with method local
+ *          of the direct method within a few percent; for others they are estimates
  * Cost     one ordering and analysis if the query needs them, which the plan keeps; else one pass over L */
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times,
                                         const double *t, int32_t k, hd_estimate *estimate,
@@ -21154,10 +21153,11 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
-#define HDI_PATCH_ROW 1800
-#define HDI_WHOLE_ROW 2600
-/* Bytes of a patch for each number of its real factor, as measured: four complex factors and the rest. */
+#define HDI_PATCH_ROW 3600
+#define HDI_WHOLE_ROW 2900
+/* Bytes for each number of the real factor, as measured: four complex factors and the rest; with eight. */
 #define HDI_PATCH_BYTES 170
+#define HDI_PATCH_EXACT 255
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
@@ -21165,6 +21165,8 @@ typedef struct hdi_patches {
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
     int32_t stamp;               /* of marks */
     int32_t core, most;          /* pieces have so many rows at most, patches fewer than most */
+    hdi_fill fill;               /* of the factor of a patch, as guessed */
+    double each;                 /* bytes of a patch for each number of its real factor, as measured */
     int32_t done;                /* pieces that are answered */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
     char *room;                  /* for the factors of one patch after the other: fresh memory is dear */
@@ -21233,14 +21235,16 @@ static double hdi_patch_cut(hdi_patches *x) {
         double cost, more;
         if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return 0;
         f = hdi_fill_guess(x->local->n, x->local->n * wide);
+        if (least == HUGE_VAL) x->fill = f;
         cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
-        more = hdi_bytes_left(h->heat->ctx) / (HDI_PATCH_BYTES * f.stored);
+        more = hdi_bytes_left(h->heat->ctx) / (x->each * f.stored);
         if (more > 1 && cost < least) {
             /* where the limit makes pieces small they have as many rows as fit: margins stay as wide */
             const double core = end - begin, margin = sqrt(x->local->n) - sqrt(core);
             const double side = least < HUGE_VAL ? 0 : sqrt(more * x->local->n) - margin;
             least = cost;
             x->core = (int32_t)hdi_max(core, hdi_min(side * side, 1.9 * core));
+            x->fill = f;
         } else if (least < HUGE_VAL) {
             break;
         }
@@ -21493,6 +21497,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
     x->most = INT32_MAX;
+    x->each = hdi_exacting(h->heat) ? HDI_PATCH_EXACT : HDI_PATCH_BYTES;
     x->reach = 1;
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
@@ -21504,11 +21509,13 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     return HD_OK;
 }
 
-/* Does auto take patches? Only if a margin is small beside the mesh is it worth while to cut it. */
-static int hdi_patches_pay(hdi_patches *x) {
-    hdi_heat_call *h = x->to->task.h;
+/* Does auto take patches for diagonals at the query's times, times factor? Only if a margin is small beside the
+ * mesh is it worth while to cut it. */
+static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double factor) {
+    hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
-    if (n < HDI_PATCH_FROM || hdi_patches_open(x, x->to) < 0) return 0;
+    if (n < HDI_PATCH_FROM || hdi_patches_open(x, to) < 0) return 0;
+    x->t *= factor;
     return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
            hdi_patch_cut(x) < 0;
 }
@@ -21580,9 +21587,8 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     const int may = hdi_patches_can(h->heat);
     const hd_report rep = *h->rep;
     hdi_patches x;
-    x.to = to;
     if (may && h->heat->opts.method == HD_METHOD_LOCAL) return hdi_diagonals_by_patches(to, "asked for");
-    if (may && hdi_patches_pay(&x)) return hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x, HDI_PATCHES_PAY);
     if (h->e->status < 0 || hdi_diagonals_run(h, to) >= 0 || !may || !hdi_over_limit(h->heat->ctx, h->e))
         return h->e->status;
     hdi_error_clear(h->e);
@@ -21616,9 +21622,8 @@ static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, con
     for (v = 0; v < lap->n; v++)
         if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
     if (to.n_rows < HDI_PATCH_LEAST) return 0;
-    x.to = &to;
     if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
-    else if (!hdi_patches_pay(&x) || hdi_patches_run(&x, HDI_PATCHES_PAY) < 0) return h->e->status < 0;
+    else if (!hdi_patches_pay(&x, &to, 1) || hdi_patches_run(&x, HDI_PATCHES_PAY) < 0) return h->e->status < 0;
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
     return 1;
@@ -22200,21 +22205,11 @@ static hd_status hdi_distance_by_patches(hdi_task *task) {
 
 /* Would the diagonal cost less by patches? */
 static int hdi_distance_pays(hdi_heat_call *h, const hdi_distance_row *kind) {
-    double t = 0;
     hdi_diagonals to;
-    hdi_heat_call d;
     hdi_patches x;
-    int32_t q;
-    int pays = 0;
-    for (q = 0; q < h->ask.n_times; q++) t = hdi_max(t, kind->time * h->ask.t[q]);
-    if (hdi_kernel_begin(&d, h->heat, HD_KERNEL_SYMMETRIC, NULL, h->e) >= 0 &&
-        hdi_times_check(&d, 1, &t, 1) >= 0) {
-        memset(&to, 0, sizeof to);
-        to.task.h = &d;
-        x.to = &to;
-        pays = hdi_patches_pay(&x);
-    }
-    return hdi_heat_end(&d) >= 0 && pays;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    return hdi_patches_pay(&x, &to, kind->time);
 }
 
 /* Answers a query for distances: by patches where method local is asked for, where that costs less, and where
@@ -22892,6 +22887,44 @@ static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over,
 
 /* ---- estimates of queries ---- */
 
+/* Of each row of a patch, beside its factor. */
+#define HDI_PATCH_SECONDS 3e-6
+
+/* The same query by patches, each for all times. Do they cost less? */
+static int hdi_estimate_patches(const hdi_estimate *x) {
+    hdi_heat_call *h = x->h;
+    hd_heat *heat = h->heat;
+    const hdi_distance_row *kind = x->query->distance;
+    const double tol = heat->opts.tol;
+    hd_cost *c = x->to->cost + HD_METHOD_LOCAL;
+    hdi_diagonals to;
+    hdi_patches p;
+    hd_rational set;
+    double pieces;
+    int pays;
+    if (!hdi_patches_can(heat) || (kind && kind->time == 0)) return 0;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);
+    pays = hdi_patches_pay(&p, &to, kind ? kind->time : 1);
+    if (!pays && hdi_patches_open(&p, &to) >= 0) {
+        p.t *= kind ? kind->time : 1;
+        (void)hdi_patch_cut(&p);
+    }
+    (void)hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set);
+    heat->opts.tol = tol;
+    if (h->e->status < 0) return 0;
+    hdi_patches_free(&p);
+    pieces = ceil((double)p.n / p.core) * h->n_times;
+    hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set),
+                  pieces * HDI_PATCH_PROBES, 1, c);
+    c->seconds += HDI_PATCH_SECONDS * pieces * p.fill.n;
+    c->possible = 1;
+    c->bytes = p.each * p.fill.stored + x->held;
+    c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
+    return pays;
+}
+
 /* A query at times, by poles or by what the run picks. Where few eigenpairs serve, from time `few` on, they
  * take about as long as poles, once; then poles do the other times, or all if there is no room for pairs.
  * From time `some` on they may help. */
@@ -22949,7 +22982,16 @@ static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, 
     if (hdi_heat_sort_times(h, times, NULL) < 0) return h->e->status;
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
     if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
-    if (h->t > 0 || query->by != HDI_BY_SOLVES) return hdi_estimate_times(&x);
+    if (query->by == HDI_BY_INVERSION) {
+        const int asked = heat->opts.method == HD_METHOD_LOCAL, pays = hdi_estimate_patches(&x);
+        if (h->e->status < 0 || (!asked && hdi_estimate_times(&x) < 0)) return h->e->status;
+        if (!to->cost[HD_METHOD_LOCAL].possible ||
+            !(asked || pays || c->bytes > hdi_bytes_left(heat->ctx))) return HD_OK;
+        to->method = HD_METHOD_LOCAL;
+        to->reason = asked ? "asked for" : pays ? HDI_PATCHES_PAY : HDI_PATCHES_FIT;
+        return HD_OK;
+    }
+    if (h->t > 0) return hdi_estimate_times(&x);
     to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
     to->reason = "t = 0";
     c = to->cost + to->method;
@@ -22977,7 +23019,8 @@ static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
         return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    if (query->by != HDI_BY_SOLVES && hdi_direct_only(h) < 0) return h->e->status;
+    if (query->by == HDI_BY_INVERSION ? hdi_diagonal_check(h) < 0
+                                      : query->by == HDI_BY_GROUND && hdi_direct_only(h) < 0) return h->e->status;
     return query->by == HDI_BY_GROUND ? HD_OK : hdi_times_check(h, n_times, t, query->by != HDI_BY_SOLVES);
 }
 

@@ -747,7 +747,6 @@ natural or dirichlet :: info ico.obj --border neumann
 --method takes auto or direct :: {distance ico.obj --source 0|sample ico.obj --count 2} --definition {commute|biharmonic} \
     --method {krylov|iterative|local}
 --method takes auto, direct or local :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method {krylov|iterative}
---dry-run takes --method auto or direct :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method local --dry-run
 {--degree|--poles} takes :: {hks|trace|distance --source 0|sample --count 2} ico.obj --t 1 --method local {1} {7|kernel}
 --solver :: {hks ico.obj|distance ico.obj --source 0|sample ico.obj --count 2} --t 1 --solver cocg
 --degree takes :: {hks ico.obj|distance ico.obj --source 0|pairs ico.obj --input p.txt|sample ico.obj --count 2} --t 1 --degree 1 \
@@ -1938,6 +1937,7 @@ kernel square-12.obj --filter resolvent:10h2 --source 3 -o x.npy :: filter resol
 sample square-12.obj --filter heat:10h2 --count 3 -o x.npy :: filter heat:10h2
 diffuse square-12.obj --filter band:20,80 --input ones-169.txt -o x.npy :: filter band:20,80
 hks square-12.obj --filter heat:10h2 --dry-run :: method direct
+{hks|trace|distance --source 0|sample --count 2} torus-80-50.obj --t 1h2 --method local --dry-run :: method local \(asked for\) :: (?m)^local +\d+ :: !too much
 {hks|trace|distance --source 0|sample --count 2} torus-80-50.obj --t 1h2 --memory-limit 20M --dry-run :: too much\n--method local needs less
 distance torus-80-50.obj --source 0 --definition commute --memory-limit 5M --dry-run :: too much\n :: !method local
 info squashed.obj --lengths sides-98.txt :: lengths of edges +sides-98.txt :: !box

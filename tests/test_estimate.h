@@ -543,6 +543,38 @@ static void est_many(void) {
 }
 
 /* Every query on small shapes; those whose need depends on how much of the heat is left on a larger one. */
+/* Patches: what is asked for, what auto takes where heat stays near, and what it turns to where the whole does not fit. */
+static void est_patches(void) {
+    static const hd_query queries[3] = {HD_QUERY_DIAGONAL, HD_QUERY_TRACE, HD_QUERY_DISTANCE};
+    int32_t k;
+    for (k = 2; k < 9; k++) {
+        const est_case c = {queries[k % 3], HD_METHOD_AUTO, 1, k % 3 == 2, k / 3 == 2 ? 5 : 0.5, 1, 0};
+        const hd_laplacian *lap = kit_pair(k == 2 ? "flat/240/240/0.2 vor" : "flat/100/100/0.2 vor");
+        hd_context *ctx = lap->context;
+        const int32_t mark = kit_mark();
+        double *U = KIT_NEW(double, lap->n);
+        hd_heat *heat = kit_heat(lap, k / 3 == 1 ? "method=local" : "");
+        const uint64_t before = ctx->bytes_in_use;
+        hd_estimate e;
+        hd_report rep;
+        double t, peak;
+        est_times(lap, &c, &t);
+        ctx->byte_limit = k / 3 == 2 ? before + 58000000 : 0;
+        CHECK(hd_heat_estimate(heat, c.query, 1, &t, c.k, &e, NULL) == HD_OK);
+        CHECK_MSG(e.method == HD_METHOD_LOCAL && e.cost[e.method].possible && e.cost[e.method].fits, "query %d: %s", (int)k, e.reason);
+        CHECK(e.cost[HD_METHOD_DIRECT].possible == (k / 3 != 1) && e.cost[e.method].seconds > 0 && e.cost[e.method].flops > 0);
+        kit_release(mark);
+        U = KIT_NEW(double, lap->n);
+        heat = kit_heat(lap, k / 3 == 1 ? "method=local" : "");
+        ctx->bytes_peak = ctx->bytes_in_use;
+        CHECK_MSG(est_run(heat, lap, &c, U, &rep) >= 0 && rep.method == e.method && strcmp(rep.reason, e.reason) == 0, "query %d: %s, %s, %s", (int)k, rep.error.text, rep.reason, e.reason);
+        peak = (double)(ctx->bytes_peak - before);
+        CHECK_MSG(e.cost[e.method].bytes > peak / 2.5 && e.cost[e.method].bytes < 2.5 * peak, "query %d: %g of %g bytes", (int)k, e.cost[e.method].bytes, peak);
+        ctx->byte_limit = 0;
+        kit_release(mark);
+    }
+}
+
 static void est_queries(void) {
     static const char *const pairs[4] = {"bumpy/4/5 fem", "bumpy/3/5 fem", "bumpy/3/5 vor", "flat/27/21/0.3 fem"};
     const shape *cloud = kit_shape("bumpy/2/5");
@@ -565,6 +597,7 @@ static void est_queries(void) {
 static void test_estimate(void) {
     est_flops();
     est_queries();
+    est_patches();
     est_ground();
     est_model();
     est_rooms();

@@ -316,7 +316,7 @@ static void loc_calls(void) {
     for (q = HD_QUERY_FIELDS; q <= HD_QUERY_PAIRS; q++)
         CHECK(hd_heat_estimate(heat, (hd_query)q, 1, t, 3, &cost, NULL) == HD_OK && cost.method == HD_METHOD_LOCAL && cost.cost[HD_METHOD_LOCAL].possible &&
               cost.cost[HD_METHOD_AUTO].seconds > 0 && !cost.analysed);
-    CHECK(hd_heat_estimate(heat, HD_QUERY_DIAGONAL, 1, t, 3, &cost, NULL) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_estimate(heat, HD_QUERY_DISTANCE_COMMUTE, 1, t, 3, &cost, NULL) == HD_ERR_ARGUMENT);
 }
 
 /* Paths of 48 vertices and vertices without an edge in between, which have no entry in L. */

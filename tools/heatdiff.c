@@ -1220,8 +1220,6 @@ static int check_method(const options *o)
     if (inverts && (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_KRYLOV))
         return fail(USAGE, "--method takes auto, direct or local here, not %s: %s is read off factors", name,
                     command_name(o->command));
-    if (inverts && o->method == HD_METHOD_LOCAL && o->dry_run)
-        return fail(USAGE, "--dry-run takes --method auto or direct here: what patches take is not known before");
     if (no_poles && (o->degree || o->poles))
         return fail(USAGE, "%s takes no --method %s, which has no use for it",
                     o->degree ? "--degree" : "--poles", name);
