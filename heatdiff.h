@@ -1260,6 +1260,7 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_RESTRICT __restrict__
 #define HDI_INLINE inline __attribute__((always_inline))
 #define HDI_NOINLINE __attribute__((noinline))
+#define HDI_COLD __attribute__((cold))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH __builtin_prefetch
@@ -1279,6 +1280,7 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_RESTRICT
 #define HDI_INLINE inline
 #define HDI_NOINLINE
+#define HDI_COLD
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH (void)
@@ -1413,7 +1415,7 @@ static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) 
 static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > (uint64_t)0xffe << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
 /* sqrt(a^2 + b^2): hypot's care only where it is needed. */
-static double hdi_pythag(double a, double b) {
+static HDI_NOINLINE double hdi_pythag(double a, double b) {
     const double s = a * a + b * b;
     return s > 1e-280 && s < 1e280 ? sqrt(s) : hypot(a, b);
 }
@@ -1515,7 +1517,7 @@ static int hdi_size(uint64_t a, uint64_t b, uint64_t c, uint64_t most, uint64_t 
 /* ==== [02] error ====
  * Status texts and filled errors. Internal functions take an error that is never NULL. May call [01]. */
 
-static void hdi_error_clear(hd_error *e) {
+static HDI_NOINLINE void hdi_error_clear(hd_error *e) {
     memset(e, 0, sizeof *e);
     e->face = e->vertex = e->row = e->column = e->pole = -1;
 }
@@ -1554,16 +1556,16 @@ static hd_status hdi_missing(hd_error *e) {
 }
 
 /* Refuses the call if an argument is bad. Of several refusals the first one stays. */
-static void hdi_refuse(int bad, const char *text, hd_error *e) {
+static HDI_NOINLINE void hdi_refuse(int bad, const char *text, hd_error *e) {
     if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
 }
 
-static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
+static HDI_NOINLINE void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
     if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
 }
 
 /* Appends a text, as far as there is room. */
-static void hdi_text_add(hd_error *e, const char *text) {
+static HDI_NOINLINE void hdi_text_add(hd_error *e, const char *text) {
     const size_t used = strlen(e->text), len = strlen(text), most = sizeof e->text - 1 - used;
     memcpy(e->text + used, text, len < most ? len : most);
     e->text[used + (len < most ? len : most)] = 0;
@@ -1625,7 +1627,7 @@ static double hdi_bytes_left(const hd_context *ctx) {
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
-static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
+static HDI_COLD hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = (double)more + (double)ctx->bytes_in_use;
     if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
@@ -1757,7 +1759,7 @@ static void hdi_take_room(hdi_scope *s, int64_t bytes) {
     s->left = s->room ? (uint64_t)bytes : 0;
 }
 
-static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
+static HDI_NOINLINE void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
     if (p) memset(p, 0, (size_t)count * size);
     return p;
@@ -9621,7 +9623,7 @@ static void hdi_factor_settle(hdi_factor *f) {
     while (f->n_blocks > 2) hdi_free(f->ctx, f->block[--f->n_blocks]);
 }
 
-static void hdi_factor_free(hdi_factor *f) {
+static HDI_NOINLINE void hdi_factor_free(hdi_factor *f) {
     while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
 }
@@ -10202,7 +10204,7 @@ static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const doub
     }
 }
 
-static void hdi_ldl_free(hd_ldl *f) {
+static HDI_COLD void hdi_ldl_free(hd_ldl *f) {
     hd_context own, *ctx;
     int32_t i;
     if (!f) return;
@@ -12205,7 +12207,7 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
 }
 
 /* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all of them. */
-static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+static HDI_COLD hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
                                      hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     double least = HUGE_VAL, most = 0, *room;
@@ -12554,7 +12556,7 @@ static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
 
 /* The best set that up to `most` support points give at these points: each is the point with the largest
  * error so far. Its weights are those of the last filter, its error is the largest of all, weighted. */
-static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
+static HDI_COLD void hdi_fit_run(hdi_fit *k, hd_rational *best) {
     const double goal = k->count > 1 ? HDI_FIT_MARGIN * k->tol : k->tol;
     const int32_t most = k->most + (k->constant ? 1 : 0);
     int32_t q, at = 0;
@@ -12667,7 +12669,7 @@ static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error 
 
 /* A fit: its options, the first points, and the filters that poles are found for first, evenly from the list.
  * Work arrays in s. */
-static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
+static HDI_COLD hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
                                hdi_scope *s) {
     const uint64_t sets = count > 1 ? HDI_FIT_MOST : 1, room = HDI_FIT_ROOM;
     int32_t q, i;
@@ -12700,7 +12702,7 @@ static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filte
 
 /* The sets of all filters by the poles of s. Of a lone filter, points join the fit where the error between
  * them is larger. Returns the filter that the poles serve worst, or -1 where all tolerances are kept. */
-static int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_error *e) {
+static HDI_COLD int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_error *e) {
     const double unit = hdi_fit_unit(s);
     const double join = k->n_list > 1 ? HUGE_VAL : 1.5 * hdi_max(k->tol, s->max_error);
     double most = 1;
@@ -12776,7 +12778,7 @@ static double hdi_parts_sum(const hdi_parts *p) {
 }
 
 /* A product of bounds. Zero times infinity is zero, and infinity is HUGE_VAL. */
-static double hdi_bound_times(double a, double b) {
+static HDI_NOINLINE double hdi_bound_times(double a, double b) {
     if (a == 0 || b == 0) return 0;
     return hdi_finite(a) && hdi_finite(b) ? a * b : HUGE_VAL;
 }
@@ -12942,7 +12944,7 @@ static double hdi_resolvent_factor(hd_c64 theta) {
 }
 
 /* 1/sqrt(b_ratio): from the norm of D^-1 to that of B^-1. */
-static double hdi_ratio_root(const hd_laplacian *lap) {
+static HDI_NOINLINE double hdi_ratio_root(const hd_laplacian *lap) {
     return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL;
 }
 
@@ -13161,7 +13163,7 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
-static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
+static HDI_COLD hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
                                     int32_t n, hd_error *e) {
     const uint64_t size = hdi_family_size(fam);
     int32_t room = set->n_poles, i;
@@ -16892,7 +16894,7 @@ static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s
     return e->status;
 }
 
-static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
+static HDI_COLD hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
     const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
     const double zero = 0;
     hdi_terms *terms = NULL;
@@ -18074,7 +18076,7 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 
 /* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
  * preconditioners, or bases. */
-static void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hd_laplacian *lap = heat->source;
@@ -18203,7 +18205,7 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
 
 /* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
  * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
-static void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
+static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
                            int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
@@ -18423,7 +18425,7 @@ static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
     return few ? &heat->few : &heat->elim;
 }
 
-static void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
     const hdi_fill f = hdi_heat_fill(heat, m);
@@ -18575,7 +18577,7 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
     return HD_OK;
 }
 
-static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
+static HDI_COLD hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
@@ -19222,7 +19224,7 @@ static int hdi_local_can(const hdi_heat_call *h) {
 
 /* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds
  * of the best other method, of which auto spares a small part to look. */
-static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
     const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * least);
@@ -19646,7 +19648,7 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
 
 /* Answers time q from at most `most` eigenpairs, or returns 0 where these are not enough; with most = 0 by
  * poles, of which the highest degree takes over where the error of the default is too large. */
-static int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
+static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
     if (HDI_HAS_MODES && most > 0 &&
         !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
@@ -20722,7 +20724,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
 }
 
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
-static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
+static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
                                 const hdi_diagonal *d, const hdi_probe *probe) {
     double rounding = 0, off, there;
     int32_t r;
@@ -22852,7 +22854,7 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 }
 
 /* The estimate of a query whose arguments are checked. */
-static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
+static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
                                   hd_estimate *to) {
     const hd_heat *heat = h->heat;
     const int pairs = query->query == HD_QUERY_PAIRS;
@@ -23004,7 +23006,7 @@ static void hdi_geo_factors_free(hd_geodesic *g, hd_context *ctx) {
     }
 }
 
-static void hdi_geo_free(hd_geodesic *g) {
+static HDI_COLD void hdi_geo_free(hd_geodesic *g) {
     hd_context own, *ctx = hdi_outlive(g->ctx, &g->context, &own);
     hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
