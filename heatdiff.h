@@ -1415,7 +1415,7 @@ static HDI_INLINE int hdi_finite(double x) { return (hdi_bits(x) >> 52 & 0x7ff) 
 static HDI_INLINE int hdi_nan(double x) { return hdi_bits(x) << 1 > (uint64_t)0xffe << 52; }
 static int hdi_cfinite(hd_c64 a) { return hdi_finite(a.re) && hdi_finite(a.im); }
 /* sqrt(a^2 + b^2): hypot's care only where it is needed. */
-static HDI_NOINLINE double hdi_pythag(double a, double b) {
+static double hdi_pythag(double a, double b) {
     const double s = a * a + b * b;
     return s > 1e-280 && s < 1e280 ? sqrt(s) : hypot(a, b);
 }
@@ -2291,7 +2291,7 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, int given, hd_error *er
 
 /* The same where options may name the context. Options that were not cleared are an error, and nothing in
  * them is used. */
-static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+static HDI_NOINLINE hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, 1, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
@@ -2885,9 +2885,6 @@ HDI_IN8 __m512d hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
 HDI_IN8 void hdi_store_avx512(double *p, __m512d v) { _mm512_storeu_pd(p, v); }
 HDI_IN8 __m512d hdi_fma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
 HDI_IN8 __m512d hdi_fnma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
-HDI_IN8 double hdi_total_avx512(__m512d v) {
-    return hdi_total_avx2(_mm256_add_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));
-}
 typedef uint32_t hdi_rows_avx512;                /* a bit for each */
 HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
     return ((1u << (hi > 0 ? hi : 0)) - 1u) & ~0u << (lo > 0 ? lo : 0);
@@ -2947,7 +2944,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
-#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)   /* whose sums registers hold */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 4 ? 2 : 1)             /* whose sums registers hold */
 #endif
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
@@ -3378,7 +3375,10 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
 }
 
 /* ---- rows of L and B against blocks ---- */
+/* These, and what one real right-hand side takes, are bound by memory: AVX-512 takes AVX2's kernels, measured
+ * as fast or faster. */
 
+#if HDI_WIDTH <= 4
 enum { HDI_OF(residual_ahead) = 8 };
 #define HDI_VECS (8 / HDI_WIDTH)                 /* vectors of eight numbers */
 
@@ -3396,8 +3396,7 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
         hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
         if (real) rest = HDI_OF(load)(f + at);
-        if (!real && HDI_VECS == 1) z = HDI_OF(join)(z, im * b[k]);
-        else if (!real && at < 4) z = HDI_OF(fnma)(im, b[other], z);
+        if (!real && at < 4) z = HDI_OF(fnma)(im, b[other], z);
         else if (!real) z = HDI_OF(fma)(im, b[other], z);
         rest = HDI_OF(fnma)(t, l[k], rest) - z;
         if (real && g->r) HDI_OF(store)(g->r + 8 * i + at, rest);
@@ -3461,11 +3460,8 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
     }
 }
 
-/* ---- one real right-hand side ---- */
-/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A
- * vector goes along the rows. */
+/* ---- one real right-hand side: a vector goes along the rows ---- */
 
-#if HDI_WIDTH <= 4
 /* Row i of the eight columns from l on; missing ones are the last one again. */
 HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
     int j;
@@ -3574,7 +3570,7 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
 static const hdi_kernels *HDI_OF(real_kernels)(void) {
     static const hdi_kernels hdi_table = {
         1, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve), HDI_OF(real_slices), HDI_OF(add),
-        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
+        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_PASTE(residual, HDI_SOLO)
     };
     return &hdi_table;
 }
@@ -3582,7 +3578,7 @@ static const hdi_kernels *HDI_OF(real_kernels)(void) {
 static const hdi_kernels *HDI_OF(pack_kernels)(void) {
     static const hdi_kernels hdi_table = {
         HDI_PACK, HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve), HDI_OF(pack_slices),
-        HDI_OF(add), NULL, NULL, HDI_OF(residual)
+        HDI_OF(add), NULL, NULL, HDI_PASTE(residual, HDI_SOLO)
     };
     return &hdi_table;
 }
@@ -12780,7 +12776,7 @@ static double hdi_parts_sum(const hdi_parts *p) {
 /* A product of bounds. Zero times infinity is zero, and infinity is HUGE_VAL. */
 static HDI_NOINLINE double hdi_bound_times(double a, double b) {
     if (a == 0 || b == 0) return 0;
-    return hdi_finite(a) && hdi_finite(b) ? a * b : HUGE_VAL;
+    return hdi_finite(a * b) ? a * b : HUGE_VAL;
 }
 
 static hdi_parts hdi_parts_scale(double s, hdi_parts p) {
@@ -20003,7 +19999,7 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
 }
 
 /* The start of a query of a kernel. */
-static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report,
+static HDI_NOINLINE hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report,
                                   hd_error *err) {
     const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
     if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
@@ -20012,7 +20008,7 @@ static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel ker
 }
 
 /* Sets a leading dimension's default and checks it. */
-static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
+static HDI_NOINLINE size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     const size_t n = (size_t)h->heat->source->n;
     if (ld && ld < n)
         hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
@@ -21386,7 +21382,7 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
 }
 
 /* Piece p with the margin that it has. Values go to the caller if they leave out no more than `wanted`. */
-static hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, hd_report *rep) {
+static HDI_COLD hd_status hdi_patch_once(const hdi_patches *x, int32_t p, double wanted, hd_report *rep) {
     const int32_t core = hdi_patch_begin(x, x->count, p + 1) - hdi_patch_begin(x, x->count, p);
     hdi_heat_call *h = x->to->task.h, in;
     hd_heat *own = &x->local->heat;
