@@ -1255,7 +1255,8 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #endif
 
 /* Counters that threads share have 32 bits. HDI_ATOMIC_ADD gives the sum, and whoever adds sees all that was
- * written before others added. Compilers without it share no work among threads. */
+ * written before others added. Compilers without it share no work among threads. HDI_COLD is for what runs
+ * once a call or less: GCC makes it, and what only it calls, small. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
 #define HDI_INLINE inline __attribute__((always_inline))
@@ -2291,7 +2292,8 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, int given, hd_error *er
 
 /* The same where options may name the context. Options that were not cleared are an error, and nothing in
  * them is used. */
-static HDI_NOINLINE hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+static HDI_NOINLINE hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text,
+                                             hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, 1, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
@@ -2313,7 +2315,7 @@ static hd_context *hdi_outlive(hd_context *ctx, const hd_context *own, hd_contex
 /* ==== [05] arrays ====
  * Sorting, selection, prefix sums and buckets, union-find. May call [04]. */
 
-static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
+static HDI_NOINLINE void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
     int64_t i;
     for (i = 0; i < n; i++) a[i] = value;
 }
@@ -2940,7 +2942,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_UNITS 0
 #define HDI_SPREAD
 #else
-#define HDI_UNITS (!pack)
+#define HDI_UNITS (!pack && (HDI_WIDTH > 2 || !HDI_X86))      /* plain C then serves old processors only */
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
@@ -3396,8 +3398,7 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
         hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
         if (real) rest = HDI_OF(load)(f + at);
-        if (!real && at < 4) z = HDI_OF(fnma)(im, b[other], z);
-        else if (!real) z = HDI_OF(fma)(im, b[other], z);
+        if (!real) z = at < 4 ? HDI_OF(fnma)(im, b[other], z) : HDI_OF(fma)(im, b[other], z);
         rest = HDI_OF(fnma)(t, l[k], rest) - z;
         if (real && g->r) HDI_OF(store)(g->r + 8 * i + at, rest);
         if (real && g->bx) HDI_OF(store)(g->bx + 8 * i + at, b[k]);
@@ -12204,7 +12205,7 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
 
 /* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all of them. */
 static HDI_COLD hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
-                                     hd_context *ctx, hd_error *e) {
+                                              hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     double least = HUGE_VAL, most = 0, *room;
     hd_rational set;
@@ -12665,8 +12666,8 @@ static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error 
 
 /* A fit: its options, the first points, and the filters that poles are found for first, evenly from the list.
  * Work arrays in s. */
-static HDI_COLD hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
-                               hdi_scope *s) {
+static HDI_COLD hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters,
+                                        double lambda_max, hdi_scope *s) {
     const uint64_t sets = count > 1 ? HDI_FIT_MOST : 1, room = HDI_FIT_ROOM;
     int32_t q, i;
     memset(k, 0, sizeof *k);
@@ -12812,14 +12813,14 @@ typedef struct hdi_ledger {
     int32_t lost;                /* a value is not finite: a share of it would hide any error */
 } hdi_ledger;
 
-static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
-                                   int relative) {
+static HDI_NOINLINE hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver,
+                                                hd_evidence rounding, int relative) {
     const hdi_ledger l = {{0, 0, 0, 0}, {(double)rational, (double)solver, (double)rounding, 0}, 0, HUGE_VAL,
                           relative ? 0.0 : -1.0, 0, 0};
     return l;
 }
 
-static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
+static HDI_NOINLINE double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
 
 /* A bound. Of one that is not a number nothing is known. */
 static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
@@ -13159,8 +13160,8 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
-static HDI_COLD hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
-                                    int32_t n, hd_error *e) {
+static HDI_COLD hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t,
+                                             hdi_lane *lane, int32_t n, hd_error *e) {
     const uint64_t size = hdi_family_size(fam);
     int32_t room = set->n_poles, i;
     if (!fam->filled || fam->t != t || !hdi_set_same_poles(&fam->set, set)) {
@@ -13217,7 +13218,7 @@ static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_
     if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, found / lane->b_norm);
 }
 
-static void hdi_lane_clear_off(hdi_lane *lane) {
+static HDI_NOINLINE void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
@@ -15159,8 +15160,9 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
 }
 
 /* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
-static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
-                                int normal, int32_t *vertex, double *weight, hdi_scope *in) {
+static HDI_COLD hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k,
+                                         const hd_laplacian *lap, int normal, int32_t *vertex, double *weight,
+                                         hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
     const int32_t corners = hdi_source_corners(s), all = (int32_t)n * corners;
     hd_error *e = in->e;
@@ -17462,7 +17464,7 @@ typedef struct hdi_fill { double n, nnz, flops, stored, analysis; } hdi_fill;
 /* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
  * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
  * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_fill_guess(double n, double entries) {
+static HDI_NOINLINE hdi_fill hdi_fill_guess(double n, double entries) {
     const double wide = hdi_max(1, entries / (10 * n));
     const hdi_fill f = {n, 30 * n * wide, 22 * n * sqrt(n) * wide * wide, 40 * n * wide,
                         HDI_ROW_ANALYSIS * n * wide};
@@ -17562,7 +17564,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
     return HD_OK;
 }
 
-static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
+static HDI_NOINLINE hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
@@ -18201,8 +18203,8 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
 
 /* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
  * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
-static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
-                           int32_t k, double held, hd_cost *c) {
+static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after,
+                                    int32_t n_sets, int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
     const int inverse = after >= HDI_AFTER_INVERSE;
@@ -18573,7 +18575,7 @@ static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows
     return HD_OK;
 }
 
-static HDI_COLD hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
+static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
@@ -19999,8 +20001,8 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
 }
 
 /* The start of a query of a kernel. */
-static HDI_NOINLINE hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report,
-                                  hd_error *err) {
+static HDI_NOINLINE hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel,
+                                               hd_report *report, hd_error *err) {
     const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
     if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
     if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
@@ -20721,7 +20723,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
 
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
 static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
-                                const hdi_diagonal *d, const hdi_probe *probe) {
+                                         const hdi_diagonal *d, const hdi_probe *probe) {
     double rounding = 0, off, there;
     int32_t r;
     for (r = 0; r < probe->k; r++) {
@@ -22851,7 +22853,7 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 
 /* The estimate of a query whose arguments are checked. */
 static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
-                                  hd_estimate *to) {
+                                           hd_estimate *to) {
     const hd_heat *heat = h->heat;
     const int pairs = query->query == HD_QUERY_PAIRS;
     const int32_t times = query->distance && !pairs ? query->distance->time : 1;
@@ -24279,8 +24281,8 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
 
 HEATDIFF_API void hd_ldl_free(hd_ldl *f) { hdi_ldl_free(f); }
 
-HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
-                                      hd_ldl_report *report, hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
+                                               hd_ldl_report *report, hd_error *err) {
     hd_ldl_opts o;
     hdi_call c;
     hd_csr shape;
@@ -24385,8 +24387,8 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
 
 /* ---- heat ---- */
 
-HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
-                                      hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
+                                               const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
@@ -24531,9 +24533,9 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                        double *D, size_t ldd, double *Z, double *bound, hd_report *report,
-                                        hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                                 const double *t, double *D, size_t ldd, double *Z,
+                                                 double *bound, hd_report *report, hd_error *err) {
     hdi_diagonals to;
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
