@@ -1254,11 +1254,13 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #endif
 
 /* Counters that threads share have 32 bits. HDI_ATOMIC_ADD gives the sum, and whoever adds sees all that was
- * written before others added. Compilers without it share no work among threads. */
+ * written before others added. Compilers without it share no work among threads. HDI_COLD is for what runs
+ * once a call or less: GCC makes it, and what only it calls, small. */
 #if defined(__GNUC__) || defined(__clang__)
 #define HDI_RESTRICT __restrict__
 #define HDI_INLINE inline __attribute__((always_inline))
 #define HDI_NOINLINE __attribute__((noinline))
+#define HDI_COLD __attribute__((cold))
 #define HDI_LOAD(p) __atomic_load_n(p, __ATOMIC_RELAXED)
 #define HDI_STORE(p, v) __atomic_store_n(p, v, __ATOMIC_RELAXED)
 #define HDI_PREFETCH __builtin_prefetch
@@ -1278,6 +1280,7 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_RESTRICT
 #define HDI_INLINE inline
 #define HDI_NOINLINE
+#define HDI_COLD
 #define HDI_LOAD(p) (*(p))
 #define HDI_STORE(p, v) (*(p) = (v))
 #define HDI_PREFETCH (void)
@@ -1514,7 +1517,7 @@ static int hdi_size(uint64_t a, uint64_t b, uint64_t c, uint64_t most, uint64_t 
 /* ==== [02] error ====
  * Status texts and filled errors. Internal functions take an error that is never NULL. May call [01]. */
 
-static void hdi_error_clear(hd_error *e) {
+static HDI_NOINLINE void hdi_error_clear(hd_error *e) {
     memset(e, 0, sizeof *e);
     e->face = e->vertex = e->row = e->column = e->pole = -1;
 }
@@ -1553,16 +1556,16 @@ static hd_status hdi_missing(hd_error *e) {
 }
 
 /* Refuses the call if an argument is bad. Of several refusals the first one stays. */
-static void hdi_refuse(int bad, const char *text, hd_error *e) {
+static HDI_NOINLINE void hdi_refuse(int bad, const char *text, hd_error *e) {
     if (bad && e->status >= 0) (void)hdi_fail(e, HD_ERR_ARGUMENT, text);
 }
 
-static void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
+static HDI_NOINLINE void hdi_refuse_value(int bad, const char *text, double value, hd_error *e) {
     if (bad && e->status >= 0) (void)hdi_fail_row(e, HD_ERR_ARGUMENT, text, -1, -1, value);
 }
 
 /* Appends a text, as far as there is room. */
-static void hdi_text_add(hd_error *e, const char *text) {
+static HDI_NOINLINE void hdi_text_add(hd_error *e, const char *text) {
     const size_t used = strlen(e->text), len = strlen(text), most = sizeof e->text - 1 - used;
     memcpy(e->text + used, text, len < most ? len : most);
     e->text[used + (len < most ? len : most)] = 0;
@@ -1624,7 +1627,7 @@ static double hdi_bytes_left(const hd_context *ctx) {
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
-static hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
+static HDI_COLD hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = (double)more + (double)ctx->bytes_in_use;
     if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
@@ -1756,7 +1759,7 @@ static void hdi_take_room(hdi_scope *s, int64_t bytes) {
     s->left = s->room ? (uint64_t)bytes : 0;
 }
 
-static void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
+static HDI_NOINLINE void *hdi_take_zero(hdi_scope *s, uint64_t count, size_t size) {
     void *p = hdi_take(s, count, size);
     if (p) memset(p, 0, (size_t)count * size);
     return p;
@@ -2288,7 +2291,8 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, int given, hd_error *er
 
 /* The same where options may name the context. Options that were not cleared are an error, and nothing in
  * them is used. */
-static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
+static HDI_NOINLINE hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text,
+                                             hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, 1, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
@@ -2310,7 +2314,7 @@ static hd_context *hdi_outlive(hd_context *ctx, const hd_context *own, hd_contex
 /* ==== [05] arrays ====
  * Sorting, selection, prefix sums and buckets, union-find. May call [04]. */
 
-static void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
+static HDI_NOINLINE void hdi_fill_i32(int32_t *a, int64_t n, int32_t value) {
     int64_t i;
     for (i = 0; i < n; i++) a[i] = value;
 }
@@ -2882,9 +2886,6 @@ HDI_IN8 __m512d hdi_load_avx512(const double *p) { return _mm512_loadu_pd(p); }
 HDI_IN8 void hdi_store_avx512(double *p, __m512d v) { _mm512_storeu_pd(p, v); }
 HDI_IN8 __m512d hdi_fma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fmadd_pd(a, b, c); }
 HDI_IN8 __m512d hdi_fnma_avx512(__m512d a, __m512d b, __m512d c) { return _mm512_fnmadd_pd(a, b, c); }
-HDI_IN8 double hdi_total_avx512(__m512d v) {
-    return hdi_total_avx2(_mm256_add_pd(_mm512_castpd512_pd256(v), _mm512_extractf64x4_pd(v, 1)));
-}
 typedef uint32_t hdi_rows_avx512;                /* a bit for each */
 HDI_IN8 uint32_t hdi_rows_of_avx512(int32_t lo, int32_t hi) {
     return ((1u << (hi > 0 ? hi : 0)) - 1u) & ~0u << (lo > 0 ? lo : 0);
@@ -2940,11 +2941,11 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_UNITS 0
 #define HDI_SPREAD
 #else
-#define HDI_UNITS (!pack)
+#define HDI_UNITS (!pack && (HDI_WIDTH > 2 || !HDI_X86))      /* plain C then serves old processors only */
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
-#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)   /* whose sums registers hold */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 4 ? 2 : 1)             /* whose sums registers hold */
 #endif
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
@@ -3375,7 +3376,10 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
 }
 
 /* ---- rows of L and B against blocks ---- */
+/* These, and what one real right-hand side takes, are bound by memory: AVX-512 takes AVX2's kernels, measured
+ * as fast or faster. */
 
+#if HDI_WIDTH <= 4
 enum { HDI_OF(residual_ahead) = 8 };
 #define HDI_VECS (8 / HDI_WIDTH)                 /* vectors of eight numbers */
 
@@ -3393,9 +3397,7 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
         hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
         if (real) rest = HDI_OF(load)(f + at);
-        if (!real && HDI_VECS == 1) z = HDI_OF(join)(z, im * b[k]);
-        else if (!real && at < 4) z = HDI_OF(fnma)(im, b[other], z);
-        else if (!real) z = HDI_OF(fma)(im, b[other], z);
+        if (!real) z = at < 4 ? HDI_OF(fnma)(im, b[other], z) : HDI_OF(fma)(im, b[other], z);
         rest = HDI_OF(fnma)(t, l[k], rest) - z;
         if (real && g->r) HDI_OF(store)(g->r + 8 * i + at, rest);
         if (real && g->bx) HDI_OF(store)(g->bx + 8 * i + at, b[k]);
@@ -3458,11 +3460,8 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
     }
 }
 
-/* ---- one real right-hand side ---- */
-/* It is bound by memory, and runs are short: AVX-512 takes AVX2's kernels, measured as fast or faster. A
- * vector goes along the rows. */
+/* ---- one real right-hand side: a vector goes along the rows ---- */
 
-#if HDI_WIDTH <= 4
 /* Row i of the eight columns from l on; missing ones are the last one again. */
 HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
     int j;
@@ -3571,7 +3570,7 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
 static const hdi_kernels *HDI_OF(real_kernels)(void) {
     static const hdi_kernels hdi_table = {
         1, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve), HDI_OF(real_slices), HDI_OF(add),
-        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
+        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_PASTE(residual, HDI_SOLO)
     };
     return &hdi_table;
 }
@@ -3579,7 +3578,7 @@ static const hdi_kernels *HDI_OF(real_kernels)(void) {
 static const hdi_kernels *HDI_OF(pack_kernels)(void) {
     static const hdi_kernels hdi_table = {
         HDI_PACK, HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve), HDI_OF(pack_slices),
-        HDI_OF(add), NULL, NULL, HDI_OF(residual)
+        HDI_OF(add), NULL, NULL, HDI_PASTE(residual, HDI_SOLO)
     };
     return &hdi_table;
 }
@@ -9620,7 +9619,7 @@ static void hdi_factor_settle(hdi_factor *f) {
     while (f->n_blocks > 2) hdi_free(f->ctx, f->block[--f->n_blocks]);
 }
 
-static void hdi_factor_free(hdi_factor *f) {
+static HDI_NOINLINE void hdi_factor_free(hdi_factor *f) {
     while (f->n_blocks > 0) hdi_free(f->ctx, f->block[--f->n_blocks]);
     memset(f, 0, sizeof *f);
 }
@@ -10207,7 +10206,7 @@ static void hdi_ldl_solve(hd_ldl *f, const hdi_factor *of, int32_t n, const doub
     }
 }
 
-static void hdi_ldl_free(hd_ldl *f) {
+static HDI_COLD void hdi_ldl_free(hd_ldl *f) {
     hd_context own, *ctx;
     int32_t i;
     if (!f) return;
@@ -12210,8 +12209,8 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
 }
 
 /* Sets for n_times times, each in terms of its own time: theta_i/t is the same for all of them. */
-static hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
-                                     hd_context *ctx, hd_error *e) {
+static HDI_COLD hd_status hdi_rational_shared(hd_rational *out, int32_t n_times, const double *t, double tol,
+                                              hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     double least = HUGE_VAL, most = 0, *room;
     hd_rational set;
@@ -12559,7 +12558,7 @@ static double hdi_fit_residues(hdi_fit *k, int32_t q, hd_rational *set) {
 
 /* The best set that up to `most` support points give at these points: each is the point with the largest
  * error so far. Its weights are those of the last filter, its error is the largest of all, weighted. */
-static void hdi_fit_run(hdi_fit *k, hd_rational *best) {
+static HDI_COLD void hdi_fit_run(hdi_fit *k, hd_rational *best) {
     const double goal = k->count > 1 ? HDI_FIT_MARGIN * k->tol : k->tol;
     const int32_t most = k->most + (k->constant ? 1 : 0);
     int32_t q, at = 0;
@@ -12672,8 +12671,8 @@ static double hdi_fit_floor(const hdi_fit *k, const hd_filter *filter, hd_error 
 
 /* A fit: its options, the first points, and the filters that poles are found for first, evenly from the list.
  * Work arrays in s. */
-static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters, double lambda_max,
-                               hdi_scope *s) {
+static HDI_COLD hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filters,
+                                        double lambda_max, hdi_scope *s) {
     const uint64_t sets = count > 1 ? HDI_FIT_MOST : 1, room = HDI_FIT_ROOM;
     int32_t q, i;
     memset(k, 0, sizeof *k);
@@ -12705,7 +12704,7 @@ static hd_status hdi_fit_begin(hdi_fit *k, int32_t count, const hd_filter *filte
 
 /* The sets of all filters by the poles of s. Of a lone filter, points join the fit where the error between
  * them is larger. Returns the filter that the poles serve worst, or -1 where all tolerances are kept. */
-static int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_error *e) {
+static HDI_COLD int32_t hdi_fit_sets(hdi_fit *k, hd_rational *s, hd_rational *out, hd_error *e) {
     const double unit = hdi_fit_unit(s);
     const double join = k->n_list > 1 ? HUGE_VAL : 1.5 * hdi_max(k->tol, s->max_error);
     double most = 1;
@@ -12781,9 +12780,9 @@ static double hdi_parts_sum(const hdi_parts *p) {
 }
 
 /* A product of bounds. Zero times infinity is zero, and infinity is HUGE_VAL. */
-static double hdi_bound_times(double a, double b) {
+static HDI_NOINLINE double hdi_bound_times(double a, double b) {
     if (a == 0 || b == 0) return 0;
-    return hdi_finite(a) && hdi_finite(b) ? a * b : HUGE_VAL;
+    return hdi_finite(a * b) ? a * b : HUGE_VAL;
 }
 
 static hdi_parts hdi_parts_scale(double s, hdi_parts p) {
@@ -12819,14 +12818,14 @@ typedef struct hdi_ledger {
     int32_t lost;                /* a value is not finite: a share of it would hide any error */
 } hdi_ledger;
 
-static hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver, hd_evidence rounding,
-                                   int relative) {
+static HDI_NOINLINE hdi_ledger hdi_ledger_begin(hd_evidence rational, hd_evidence solver,
+                                                hd_evidence rounding, int relative) {
     const hdi_ledger l = {{0, 0, 0, 0}, {(double)rational, (double)solver, (double)rounding, 0}, 0, HUGE_VAL,
                           relative ? 0.0 : -1.0, 0, 0};
     return l;
 }
 
-static double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
+static HDI_NOINLINE double hdi_quotient(double a, double b) { return a == 0 ? 0 : b > 0 ? a / b : HUGE_VAL; }
 
 /* A bound. Of one that is not a number nothing is known. */
 static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
@@ -12947,7 +12946,7 @@ static double hdi_resolvent_factor(hd_c64 theta) {
 }
 
 /* 1/sqrt(b_ratio): from the norm of D^-1 to that of B^-1. */
-static double hdi_ratio_root(const hd_laplacian *lap) {
+static HDI_NOINLINE double hdi_ratio_root(const hd_laplacian *lap) {
     return lap->b_ratio > 0 ? 1 / sqrt(lap->b_ratio) : HUGE_VAL;
 }
 
@@ -13166,8 +13165,8 @@ static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
 }
 
 /* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
-static hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t, hdi_lane *lane,
-                                    int32_t n, hd_error *e) {
+static HDI_COLD hd_status hdi_family_prepare(hdi_family *fam, const hd_rational *set, double t,
+                                             hdi_lane *lane, int32_t n, hd_error *e) {
     const uint64_t size = hdi_family_size(fam);
     int32_t room = set->n_poles, i;
     if (!fam->filled || fam->t != t || !hdi_set_same_poles(&fam->set, set)) {
@@ -13224,7 +13223,7 @@ static void hdi_lane_residual(hdi_lane *lane, const hd_laplacian *lap, const hd_
     if (lane->b_norm > 0) lane->residual = hdi_max(lane->residual, found / lane->b_norm);
 }
 
-static void hdi_lane_clear_off(hdi_lane *lane) {
+static HDI_NOINLINE void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
@@ -15177,8 +15176,9 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
 }
 
 /* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
-static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
-                                int normal, int32_t *vertex, double *weight, hdi_scope *in) {
+static HDI_COLD hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k,
+                                         const hd_laplacian *lap, int normal, int32_t *vertex, double *weight,
+                                         hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
     const int32_t corners = hdi_source_corners(s), all = (int32_t)n * corners;
     hd_error *e = in->e;
@@ -16908,7 +16908,7 @@ static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s
     return e->status;
 }
 
-static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
+static HDI_COLD hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
     const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
     const double zero = 0;
     hdi_terms *terms = NULL;
@@ -17480,7 +17480,7 @@ typedef struct hdi_fill { double n, nnz, flops, stored, analysis; } hdi_fill;
 /* The guess is the least fill that a surface can have. With w entries in a row, w > 10, non-zeros are w/10
  * times and flops (w/10)^2 times as many. (Point sets with 233 and 117 entries a row, 20K to 150K points:
  * 1220 to 1700 n and 13000 n^1.5, 600 to 830 n and 3500 n^1.5.) */
-static hdi_fill hdi_fill_guess(double n, double entries) {
+static HDI_NOINLINE hdi_fill hdi_fill_guess(double n, double entries) {
     const double wide = hdi_max(1, entries / (10 * n));
     const hdi_fill f = {n, 30 * n * wide, 22 * n * sqrt(n) * wide * wide, 40 * n * wide,
                         HDI_ROW_ANALYSIS * n * wide};
@@ -17580,7 +17580,7 @@ static hd_status hdi_fields_check(const hdi_heat_call *h) {
     return HD_OK;
 }
 
-static hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
+static HDI_NOINLINE hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
 }
@@ -18090,7 +18090,7 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 
 /* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
  * preconditioners, or bases. */
-static void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hd_laplacian *lap = heat->source;
@@ -18219,8 +18219,8 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
 
 /* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
  * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
-static void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after, int32_t n_sets,
-                           int32_t k, double held, hd_cost *c) {
+static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after,
+                                    int32_t n_sets, int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
     const int inverse = after >= HDI_AFTER_INVERSE;
@@ -18439,7 +18439,7 @@ static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
     return few ? &heat->few : &heat->elim;
 }
 
-static void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
     const hdi_fill f = hdi_heat_fill(heat, m);
@@ -19238,7 +19238,7 @@ static int hdi_local_can(const hdi_heat_call *h) {
 
 /* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds
  * of the best other method, of which auto spares a small part to look. */
-static void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
     const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * least);
@@ -19662,7 +19662,7 @@ static void hdi_task_at(hdi_heat_call *h, int32_t q) {
 
 /* Answers time q from at most `most` eigenpairs, or returns 0 where these are not enough; with most = 0 by
  * poles, of which the highest degree takes over where the error of the default is too large. */
-static int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
+static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     hdi_heat_call *h = task->h;
     if (HDI_HAS_MODES && most > 0 &&
         !hdi_modes_enough(h->heat, h->ask.t[q], task->depth, most, h->e)) return 0;
@@ -20017,8 +20017,8 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
 }
 
 /* The start of a query of a kernel. */
-static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel, hd_report *report,
-                                  hd_error *err) {
+static HDI_NOINLINE hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel,
+                                               hd_report *report, hd_error *err) {
     const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
     if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
     if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
@@ -20026,7 +20026,7 @@ static hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel ker
 }
 
 /* Sets a leading dimension's default and checks it. */
-static size_t hdi_leading(hdi_heat_call *h, size_t ld) {
+static HDI_NOINLINE size_t hdi_leading(hdi_heat_call *h, size_t ld) {
     const size_t n = (size_t)h->heat->source->n;
     if (ld && ld < n)
         hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: a leading dimension is smaller than the number of vertices");
@@ -20738,8 +20738,8 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
 }
 
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
-static double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
-                                const hdi_diagonal *d, const hdi_probe *probe) {
+static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
+                                         const hdi_diagonal *d, const hdi_probe *probe) {
     double rounding = 0, off, there;
     int32_t r;
     for (r = 0; r < probe->k; r++) {
@@ -22954,8 +22954,8 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
 }
 
 /* The estimate of a query whose arguments are checked. */
-static hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
-                                  hd_estimate *to) {
+static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
+                                           hd_estimate *to) {
     const hd_heat *heat = h->heat;
     const int pairs = query->query == HD_QUERY_PAIRS;
     const int32_t times = query->distance && !pairs ? query->distance->time : 1;
@@ -23116,7 +23116,7 @@ static void hdi_geo_factors_free(hd_geodesic *g, hd_context *ctx) {
     }
 }
 
-static void hdi_geo_free(hd_geodesic *g) {
+static HDI_COLD void hdi_geo_free(hd_geodesic *g) {
     hd_context own, *ctx = hdi_outlive(g->ctx, &g->context, &own);
     hdi_geo_factors_free(g, ctx);
     hdi_symbolic_free(ctx, &g->sym);
@@ -24393,8 +24393,8 @@ HEATDIFF_API double hd_filter_eval(const hd_filter *filter, double lambda) {
 
 HEATDIFF_API void hd_ldl_free(hd_ldl *f) { hdi_ldl_free(f); }
 
-HEATDIFF_API hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
-                                      hd_ldl_report *report, hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_ldl_analyse(hd_ldl **out, const hd_csr *a, const hd_ldl_opts *opts,
+                                               hd_ldl_report *report, hd_error *err) {
     hd_ldl_opts o;
     hdi_call c;
     hd_csr shape;
@@ -24499,8 +24499,8 @@ HEATDIFF_API hd_status hd_ldl_inverse_complex(hd_ldl *f, hd_c64 *values, hd_c64 
 
 /* ---- heat ---- */
 
-HEATDIFF_API hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap, const hd_heat_opts *opts,
-                                      hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_heat_create(hd_heat **out, const hd_laplacian *lap,
+                                               const hd_heat_opts *opts, hd_error *err) {
     hdi_call c;
     hd_heat *heat;
     if (hdi_enter_with(&c, !opts || HDI_CLEARED(opts),
@@ -24645,9 +24645,9 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
     return hdi_heat_run(&h);
 }
 
-HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                        double *D, size_t ldd, double *Z, double *bound, hd_report *report,
-                                        hd_error *err) {
+HEATDIFF_API HDI_COLD hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                                 const double *t, double *D, size_t ldd, double *Z,
+                                                 double *bound, hd_report *report, hd_error *err) {
     hdi_diagonals to;
     hdi_heat_call h;
     if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
