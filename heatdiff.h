@@ -13483,7 +13483,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
 /* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges that lead there
  * from its vertices. */
 typedef struct hdi_rim {
-    int32_t n, n_edges;
+    int32_t n, n_edges, conserves;   /* conserves: no heat is lost but over the rim */
     const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
     const double *l, *b;         /* [n_edges] entries of L and B; b NULL: B is diagonal */
     const double *weight;        /* [n] 1/diag(B) */
@@ -17976,17 +17976,18 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
     const hd_laplacian *lap = h->lap;
     const double *out = hdi_lane_answer(lane), least = ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0, total = hdi_parts_sum(&lane->off);
+    const int part = h->rim && h->rim->conserves;
     hd_report *rep = h->rep;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
         spread += lane->dual ? hdi_inverse_mass(lap, i) : lap->b_diag[i];
-        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
+        if (!part && !hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
     for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
+        if (part ? !h->rate : hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (!h->ask.list) {
         hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
@@ -18002,7 +18003,7 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
                                    hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
-    if (lap->conserves && !h->heat->opts.rational && heat_abs > 0)
+    if ((part || lap->conserves) && !h->heat->opts.rational && heat_abs > 0)
         rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
 }
 
@@ -18824,9 +18825,10 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
                            double *d, int32_t *id, int64_t *fill) {
     double *edge_l = d + rim->n, *edge_b = edge_l + rim->n_edges;
     int64_t p, e = 0;
-    int32_t i, c;
+    int32_t i, c, conserves = lap->conserves;
     for (i = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
+        conserves = conserves && hdi_finite(lap->component_mass[lap->component[row]]);
         out->mass[i] = lap->mass[row];
         out->b_diag[i] = lap->b_diag[row];
         out->component[i] = rim->n > 0 ? 0 : lap->component[row];
@@ -18848,6 +18850,7 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
         }
     }
     rim->weight = d;
+    rim->conserves = conserves;
     rim->rest = (hd_c64 *)(void *)(edge_b + rim->n_edges);
     rim->l = edge_l;
     rim->b = lap->B ? edge_b : NULL;
@@ -19003,29 +19006,28 @@ static double hdi_local_hops(const hd_laplacian *lap) {
     return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
-/* The reach beyond which poles leave out less than tol, relative to the largest value of their sum, as of
- * hdi_local_find: their solutions fall like exp(-Re sqrt(theta) d/sqrt(t)). For exp without poles 1. */
-#define HDI_LOCAL_WIDTH 9        /* sqrt(t) of the usual reach */
-
+/* The radius in sqrt(t) beyond which the solutions of a set's poles, which fall like exp(-Re sqrt(theta)
+ * d/sqrt(t)), are below tol times the largest value of their sum. Without a set 1: see hdi_local_find. */
 static double hdi_local_reach(const hd_rational *set, double tol) {
-    double reach = 0;
+    double reach = set ? 0.1 : 1;
     int32_t p;
     for (p = 0; set && p < set->n_poles; p++) {
         const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
         const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
         reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
     }
-    return set ? reach / HDI_LOCAL_WIDTH + 0.1 : 1;
+    return reach;
 }
 
-/* Finds the ball of item q, `reach` times as large as usual, or that of a row in the middle if items are not
- * known. */
+/* Finds the ball of item q, or that of a row in the middle if items are not known. reach: without a set as a
+ * multiple of what is usual. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
-    const double t = h->times[h->n_times - 1] / h->heat->scale;
+    const double root = sqrt(h->times[h->n_times - 1] / h->heat->scale);
+    const int poles = h->heat->poles_asked;
     hd_context *ctx = h->heat->ctx;
     hdi_terms c = hdi_terms_vertex(lap->vertex[lap->n_active / 2]);
-    double edge;
+    double edge, edges;
     int32_t i;
     hdi_local_clear(l, lap);
     if (h->ask.F) {
@@ -19041,8 +19043,9 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
     edge = hdi_local_edge(lap, l->at[0].row);
-    edge *= hdi_local_edges(lap, sqrt(t) / edge);     /* reach times this; more reach takes more edges */
-    return hdi_local_grow(l, lap, reach * edge, reach * hdi_local_hops(lap), most, ctx, h->e);
+    edges = poles ? hdi_local_edges(lap, 0) * (1 + reach * root / (4 * edge))
+                  : hdi_local_edges(lap, root / edge) * reach;   /* more reach takes more edges */
+    return hdi_local_grow(l, lap, edges * edge, (poles ? 1 : reach) * hdi_local_hops(lap), most, ctx, h->e);
 }
 
 /* The source of item q in terms of vertices of the ball. id, weight: room for it. */
@@ -19209,7 +19212,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
         if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
         if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_local <= wanted) return h->e->status;
         tol *= wanted / hdi_min(rep->error_local, 1e16 * wanted);
-        reach = set ? hdi_max(hdi_local_reach(set, tol), 1.2 * reach)
+        reach = set ? hdi_max(hdi_local_reach(set, tol), (tries > 1 ? 1.5 : 1.05) * reach)
                     : hdi_local_more(reach, tries, rep->error_local / wanted);
     }
     if (automatic && h->e->status >= 0)
