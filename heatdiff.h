@@ -455,8 +455,8 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 10 sqrt(t) or more around the source, or where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. Needs a time
-     * and b_ratio > 0; not for pole sets */
+     * answers beyond are 0. With rational: direct on a ball. Diagonals, and distances to all: direct, on
+     * patches with margins. Needs a time and b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -572,7 +572,7 @@ typedef struct hd_report {
     double smallest;            /* diagonals and distances: the smallest non-zero value */
     int64_t n_lost;             /* distances with one sure digit or none */
     int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
-    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
+    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, or for filters */
 } hd_report;
 
 typedef struct hd_spectrum_opts {
@@ -960,7 +960,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
  *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again
- * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
+ * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos),
  *        HD_ERR_NOT_FINITE */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
@@ -979,7 +979,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
  *                 more than 1e100
  *        method:  HD_ERR_ARGUMENT. Diagonals, samples and distances to all need auto, direct or local;
- *                 commute, biharmonic or a filter auto or direct
+ *                 commute, biharmonic, own pole sets auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
  * methods auto and direct take the few eigenpairs left.
  * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
@@ -19078,7 +19078,6 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     const int32_t *v = h->heat->source->vertex;
     /* a time at which nothing moves: zero has no logarithm */
     const double still = hdi_min(1, hdi_quotient(HDI_STILL, l->heat.lambda_max));
-    const int poles = h->heat->poles_asked;
     hdi_heat_call in;
     hdi_terms c;
     double *field, *times;
@@ -19108,15 +19107,15 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     for (i = 0; i < l->n && h->ask.F; i++) field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)v[l->row[i]]];
     if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
     in.ask.terms = h->ask.F ? NULL : &c;
-    in.method = poles ? HD_METHOD_DIRECT : HD_METHOD_KRYLOV;
-    in.solver = poles ? HD_SOLVER_AUTO : HD_SOLVER_LANCZOS;
+    in.solver = h->solver;
+    in.method = in.solver ? HD_METHOD_KRYLOV : HD_METHOD_DIRECT;
     in.m = hdi_heat_analysis(&in);
     if (hdi_heat_analysed_in(&l->heat, in.m, in.e) >= 0) {
         in.lap = in.m->lap;
         rep->ordering = in.m->sym.ordering;
         rep->factor_nnz = in.m->sym.nnz;
         hdi_local_clip(l, &in, times);
-        (void)(HDI_HAS_POLE_FACTORS && poles ? hdi_heat_by_direct(&in) : hdi_heat_by_krylov(&in));
+        (void)(HDI_HAS_POLE_FACTORS && !in.solver ? hdi_heat_by_direct(&in) : hdi_heat_by_krylov(&in));
     }
     return hdi_heat_end(&in);
 }
@@ -19242,7 +19241,8 @@ static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     hdi_free(ctx, U);
     if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
     if (l->n == 0 || h->e->status < 0) return;
-    if (h->ask.list) rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
+    if (h->ask.list)
+        rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
     rep.solver = h->solver;
     rep.reason = h->rep->reason;
@@ -19275,7 +19275,8 @@ static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
     return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->iterations_asked &&
-           (!heat->poles_asked || (HDI_HAS_POLE_FACTORS && heat->opts.rational)) && h->times[0] > 0 && heat->source->b_ratio > 0 &&
+           (!heat->poles_asked || (HDI_HAS_POLE_FACTORS && heat->opts.rational)) &&
+           h->times[0] > 0 && heat->source->b_ratio > 0 &&
            (asked || !hdi_query_fields(h->ask.query) ||
             (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
@@ -20299,8 +20300,8 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
     hdi_refuse(!hdi_finite(o->cut) || o->cut < 0 || o->cut >= 1, "heat: cut is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
-    hdi_refuse((o->method >= HD_METHOD_KRYLOV && (o->poles || o->degree)) ||
-               (o->method == HD_METHOD_KRYLOV && o->rational),
+    hdi_refuse(o->method >= HD_METHOD_KRYLOV &&
+               (o->poles || o->degree || (o->rational && o->method == HD_METHOD_KRYLOV)),
                "heat: krylov has no use for poles or a degree, and local only for rational", e);
     hdi_refuse(o->method >= HD_METHOD_DIRECT && (o->solver || o->precond),
                "heat: solver and precond belong to the iterative method", e);

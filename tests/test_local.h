@@ -522,6 +522,22 @@ static void loc_distances(const char *spec, hd_distance_kind kind, const char *p
     }
 }
 
+/* Where one patch is all of the mesh its diagonal leaves nothing out: the error of d^2 is at least that of its column on a ball. */
+static void loc_distance_column(const char *spec) {
+    const int32_t mark = kit_mark(), v = 100;
+    const hd_laplacian *lap = kit_pair(spec);
+    hd_heat *local = kit_heat(lap, "method=local tol=1e-12");    /* that of columns within distances */
+    const double t = lap->h * lap->h / 2;
+    double *d = KIT_NEW(double, lap->n), *u = KIT_NEW(double, lap->n), own;
+    hd_report rep, column;
+    CHECK(hd_heat_distance(local, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &v), d, 0, &rep, NULL) >= 0);
+    CHECK(hd_heat_column(local, HD_KERNEL_SYMMETRIC, 2 * t, v, u, &column, NULL) >= 0 && column.n_touched < lap->n);
+    CHECK_MSG(rep.n_patches == 1 && rep.n_touched == lap->n, "%s: %d patches", spec, (int)rep.n_patches);
+    own = column.error_bound * dense_max_abs(u, lap->n) / pow(dense_max_abs(d, lap->n), 2);
+    CHECK_MSG(own > 1e-12 && rep.error_bound > own, "%s: %g by the column, %g in all", spec, own, rep.error_bound);
+    kit_release(mark);
+}
+
 /* What has no local answer is refused. */
 static void loc_refused(void) {
     const hd_laplacian *lap = kit_pair("ico/3 fem");
@@ -672,6 +688,8 @@ static void test_local(void) {
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 fem", HD_DISTANCE_WEIGHTED, "method=local");
     loc_distances("inert/70/0 vor+held", HD_DISTANCE_CLASSICAL, "method=local");
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 vor", HD_DISTANCE_WEIGHTED, "");
+    loc_distance_column("bumpy/4/1 vor");
+    loc_distance_column("bumpy/4/1 fem");
     loc_refused();
     loc_filters("bumpy/5/1 vor", 1);
     if (!CASES_FEW) loc_filters("bumpy/5/1 fem", 0.5);
