@@ -455,8 +455,8 @@ typedef enum hd_method {
     HD_METHOD_DIRECT,           /* all poles factorised in one sweep: for many fields or columns */
     HD_METHOD_KRYLOV,           /* shift-and-invert Lanczos: one real factor, few fields or many times */
     /* The same on a ball of radius 10 sqrt(t) or more around the source, or where a field is not zero;
-     * answers beyond are 0. Diagonals, and distances to all: direct, on patches with margins. Needs a time
-     * and b_ratio > 0; not for pole sets */
+     * answers beyond are 0. With rational: direct on a ball. Diagonals, and distances to all: direct, on
+     * patches with margins. Needs a time and b_ratio > 0 */
     HD_METHOD_LOCAL
 } hd_method;
 
@@ -572,7 +572,7 @@ typedef struct hd_report {
     double smallest;            /* diagonals and distances: the smallest non-zero value */
     int64_t n_lost;             /* distances with one sure digit or none */
     int32_t n_touched, n_patches;   /* local: vertices of the largest ball or patch; pieces of diagonals */
-    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, for filters, or local */
+    double mass_drift;          /* |1'B u - 1'B f| / 1'B|u|; 0 if L loses heat, or for filters */
 } hd_report;
 
 typedef struct hd_spectrum_opts {
@@ -960,7 +960,7 @@ HEATDIFF_API void hd_heat_free(hd_heat *heat);
 /* Other pole sets for a plan, in place of hd_heat_opts.rational. Factors stay if t and the poles do.
  * sets   [count] copied. Several must have one t, lambda_max and theta, as from hd_rational_fit.
  *        hd_heat_diagonal answers for all of them, other queries for the first. count = 0: exp again
- * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov, local or Lanczos),
+ * Errors HD_ERR_ARGUMENT (column: which set; or the plan's method is krylov or Lanczos),
  *        HD_ERR_NOT_FINITE */
 HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const hd_rational *sets,
                                             hd_error *err);
@@ -979,7 +979,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
  *                 more than 1e100
  *        method:  HD_ERR_ARGUMENT. Diagonals, samples and distances to all need auto, direct or local;
- *                 commute, biharmonic or a filter auto or direct
+ *                 commute, biharmonic, own pole sets auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
  * methods auto and direct take the few eigenpairs left.
  * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
@@ -13492,11 +13492,39 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     return HD_OK;
 }
 
+/* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges that lead there
+ * from its vertices. */
+typedef struct hdi_rim {
+    int32_t n, n_edges, conserves;   /* conserves: no heat is lost but over the rim */
+    const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
+    const double *l, *b;         /* [n_edges] entries of L and B; b NULL: B is diagonal */
+    const double *weight;        /* [n] 1/diag(B) */
+    hd_c64 *rest;                /* [n] work */
+    double uneven;               /* >= 1: B's diagonal, or 1 over it, is so much larger elsewhere; its root */
+} hdi_rim;
+
 /* Arrays of a batch: right-hand sides, each in a lane, that are solved through all poles together. */
 typedef struct hdi_batch {
     double *x, *work;            /* [n][k] packs, or [n][8] real; sweeps */
     char *active;                /* [n_super] */
+    const hdi_rim *rim;          /* the pair is a part of a larger one; NULL: it is not */
 } hdi_batch;
+
+/* The norm of (t L + theta B) x on the rim, in that of D^-1: the residual of x, extended by zeros, in the
+ * larger system. Re x of row i is at x + i stride, Im x at `im` after it, 0: x is real. */
+static double hdi_rim_residual(const hdi_rim *g, const hdi_elim *m, double t, hd_c64 theta, const double *x,
+                               int64_t stride, int32_t im) {
+    const int32_t *row = m->lap->row;
+    int32_t p;
+    memset(g->rest, 0, (size_t)g->n * sizeof *g->rest);
+    for (p = 0; p < g->n_edges; p++) {
+        const double *at = x + stride * row[g->from[p]];
+        const double b = g->b ? m->scale * g->b[p] : 0;
+        const hd_c64 a = hdi_c(t * g->l[p] + b * theta.re, b * theta.im);
+        g->rest[g->to[p]] = hdi_cadd(g->rest[g->to[p]], hdi_cmul(a, hdi_c(at[0], im ? at[im] : 0)));
+    }
+    return g->uneven * sqrt(hdi_cnorm2w(g->rest, g->weight, g->n) / m->scale);
+}
 
 /* Doubles of a batch's arrays, and of x. */
 static uint64_t hdi_batch_size(const hdi_elim *m, int32_t k, uint64_t *x) {
@@ -13574,21 +13602,25 @@ static void hdi_elim_coef(const hdi_elim *m, int32_t i, const hd_c64 *w, double 
 }
 
 /* Notes for a lane what is measured of pole p, number q of a block. Re x of row i is at x + i stride. */
-static void hdi_batch_note(const hdi_elim *m, int32_t p, double (*sum)[HDI_PACK], int q, const double *x,
-                           int64_t stride, hdi_lane *to) {
+static void hdi_batch_note(const hdi_elim *m, const hdi_rim *rim, int32_t p, double (*sum)[HDI_PACK], int q,
+                           const double *x, int64_t stride, hdi_lane *to) {
     const int pair = p != m->lone;
+    const hd_c64 theta = m->set.theta[p];
     const double *at = x + stride * hdi_high32(to->watch, 0);
+    const double left = HDI_HAS_LOCAL && rim ? hdi_rim_residual(rim, m, m->t, theta, x, stride, 4 * pair) : 0;
     double all[3];
     int s;
     for (s = 0; s < 3; s++) all[s] = sqrt(hdi_max(0, sum[s][q] + (pair ? sum[s][q + 4] : 0)));
     hdi_lane_residual(to, m->lap, &m->set, p, all[0], all[1], 0);
+    to->off.local += hdi_pole_size(&m->set, p) * hdi_ratio_root(m->lap) * left / hdi_pole_distance(theta);
     if (to->watch >= 0) to->pole_value[p] = hdi_c(at[0], pair ? at[4] : 0);
-    if (p <= m->lone + 1) hdi_lane_first(to, m->lap, &m->set, p, all[2], all[0] + all[1], x, stride);
+    if (p <= m->lone + 1) hdi_lane_first(to, m->lap, &m->set, p, all[2], all[0] + all[1] + left, x, stride);
 }
 
 /* Checks the solutions x of k lanes for the poles of pack i, or for i < 0 the lone real pole, and adds their
  * part of the answers and its bounds. A real block holds all lanes. */
-static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_lane *lane, int32_t k) {
+static void hdi_batch_check(const hdi_elim *m, const hdi_batch *b, int32_t i, hdi_lane *lane, int32_t k) {
+    const double *x = b->x;
     const int32_t first = i < 0 ? m->lone : m->lone + 1 + 4 * i, n_blocks = i < 0 ? 1 : k;
     const int32_t n_here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, 4);
     double sum[HDI_LANES_BATCH][3][HDI_PACK];
@@ -13612,7 +13644,7 @@ static void hdi_batch_check(const hdi_elim *m, int32_t i, const double *x, hdi_l
     hdi_residual_run(&g, m->ctx);
     for (r = 0; r < k; r++)
         for (p = 0; p < n_here && !lane[r].skip; p++)
-            hdi_batch_note(m, first + p, i < 0 ? sum[0] : sum[r], i < 0 ? r : p,
+            hdi_batch_note(m, b->rim, first + p, i < 0 ? sum[0] : sum[r], i < 0 ? r : p,
                            x + (i < 0 ? r : HDI_PACK * r + p), g.stride, lane + r);
 }
 
@@ -13689,8 +13721,13 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     active = touched < 64 * (int64_t)k ? b->active : NULL;
     for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
         hdi_batch_solve(m, b, i, rhs, k, active, ctx);
-        hdi_batch_check(m, i, b->x, lane, k);
+        hdi_batch_check(m, b, i, lane, k);
         hdi_batch_extra(m, i, b->x, lane, k);
+    }
+    for (r = 0; r < k && HDI_HAS_LOCAL && b->rim; r++) {     /* a0 f and B u go on beyond the rim */
+        const double f = m->set.a0 != 0 ? hdi_rim_residual(b->rim, m, 0, hdi_c(1, 0), lane[r].f, 1, 0) : 0;
+        const double u = lane[r].dual ? hdi_rim_residual(b->rim, m, 0, hdi_c(1, 0), lane[r].u, 1, 0) : 0;
+        lane[r].off.local += hdi_ratio_root(m->lap) * (fabs(m->set.a0) * f + u);
     }
 }
 
@@ -14403,16 +14440,6 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
 
 enum { HDI_KRYLOV_MAX = 160, HDI_KRYLOV_POINTS = 96 };
 
-/* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges that lead there
- * from its vertices. */
-typedef struct hdi_rim {
-    int32_t n, n_edges;
-    const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
-    const double *l, *b;         /* [n_edges] entries of L and B; b NULL: B is diagonal */
-    const double *weight;        /* [n] 1/diag(B) */
-    double uneven;               /* >= 1: B's diagonal, or 1 over it, is so much larger elsewhere; its root */
-} hdi_rim;
-
 /* T_m of a right-hand side: its eigenvalues, and of its eigenvectors the first and the last row, or all. */
 typedef struct hdi_ritz {
     int32_t m, rows, rate;
@@ -14781,11 +14808,10 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
 }
 
 /* The norm of w u + dw u' on the rim, in that of B^-1 and relative to |f|_B, at time s after z->from; with
- * rate that of its derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. rest [n]. */
-static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const double *w, const double *dw,
-                           double *rest) {
+ * rate that of its derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
+static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const double *w, const double *dw) {
     const int32_t m = z->done[r], n = z->rim->n;
-    double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0};
+    double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0}, *rest = &z->rim->rest->re;
     int32_t i;
     for (i = 0; i < m; i++) {
         const double mu = z->ritz[r].mu[i], *v = z->ritz[r].v + (int64_t)i * m;
@@ -14819,7 +14845,7 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     int64_t p;
     int32_t j;
     if (m <= 0 || g->n == 0) return 0;
-    wl = (double *)hdi_alloc_zero(z->m->ctx, (uint64_t)(2 * size + g->n), sizeof *wl, e);
+    wl = (double *)hdi_alloc_zero(z->m->ctx, 2 * (uint64_t)size, sizeof *wl, e);
     if (!wl) return 0;
     wb = wl + size;
     for (j = 0; j < m; j++)
@@ -14828,15 +14854,15 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
             wl[(int64_t)j * g->n + g->to[p]] += g->l[p] * v;
             if (g->b) wb[(int64_t)j * g->n + g->to[p]] += z->m->scale * g->b[p] * v;
         }
-    last = hdi_rim_norm(z, r, t / 2, wl, wb, wb + size);
+    last = hdi_rim_norm(z, r, t / 2, wl, wb);
     off = t / 2 * last;
     for (j = 1; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
         const double step = t / 2 / (double)HDI_RIM_SAMPLES;
-        const double now = hdi_rim_norm(z, r, t / 2 + j * step, wl, wb, wb + size);
+        const double now = hdi_rim_norm(z, r, t / 2 + j * step, wl, wb);
         off += step * hdi_max(now, last);
         last = now;
     }
-    if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL, wb + size);
+    if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL);
     off *= z->rate ? t : 1;
     if (z->inverse && !(z->from > 0)) off += sqrt(hdi_norm2w(wb, g->weight, g->n));
     hdi_free(z->m->ctx, wl);
@@ -17383,7 +17409,7 @@ typedef struct hdi_heat_call {
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
-    const hdi_rim *rim;          /* krylov on a part of the mesh: the part's */
+    const hdi_rim *rim;          /* on a part of the mesh: the part's */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
     double left_out;             /* and what the part leaves out of k_t, scaled */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
@@ -17918,7 +17944,7 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
     hdi_ledger ledger = hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
     if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, 0);
-    ledger.evidence.local = h->rim ? HD_EVIDENCE_MEASURED : HD_EVIDENCE_NONE;
+    ledger.evidence.local = !h->rim ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
     return ledger;
 }
 
@@ -17966,17 +17992,18 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
     const hd_laplacian *lap = h->lap;
     const double *out = hdi_lane_answer(lane), least = ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0, total = hdi_parts_sum(&lane->off);
+    const int part = h->rim && h->rim->conserves;
     hd_report *rep = h->rep;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
         largest = hdi_max(largest, fabs(out[i]));
         spread += lane->dual ? hdi_inverse_mass(lap, i) : lap->b_diag[i];
-        if (!hdi_finite(lap->component_mass[lap->component[i]])) continue;
+        if (!part && !hdi_finite(lap->component_mass[lap->component[i]])) continue;
         heat += lap->mass[i] * lane->u[i];
         heat_abs += fabs(lap->mass[i] * lane->u[i]);
     }
     for (i = 0; i < lap->n_components; i++)
-        if (hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
+        if (part ? !h->rate : hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (!h->ask.list) {
         hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
@@ -17992,7 +18019,7 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
                                    hdi_max(ledger->evidence.solver, ledger->evidence.rounding)));
     }
     rep->residual = hdi_max(rep->residual, lane->residual);
-    if (lap->conserves && !h->heat->opts.rational && heat_abs > 0)
+    if ((part || lap->conserves) && !h->heat->opts.rational && heat_abs > 0)
         rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
 }
 
@@ -18313,6 +18340,7 @@ static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
     else one.x = b->h->heat->batch_room + b->doubles * (size_t)(index - b->inside);
     one.work = one.x + x;
     one.active = (char *)(void *)(one.x + b->doubles) - m->sym.n_super - 8;
+    one.rim = b->h->rim;
     return one;
 }
 
@@ -18352,9 +18380,10 @@ static void hdi_direct_solve(hdi_heat_call *h, int32_t n, void *arg) {
 
 static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
+    const int bound = !h->diagonal && !h->rim;   /* that of a part bounds nothing */
     hdi_batches b;
-    if (hdi_direct_factors(h, h->diagonal ? HDI_AFTER_SOLVES : HDI_AFTER_BOUND, 0) < 0) return h->e->status;
-    if (HDI_HAS_DIAGONAL && !h->diagonal && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
+    if (hdi_direct_factors(h, bound ? HDI_AFTER_BOUND : HDI_AFTER_SOLVES, 0) < 0) return h->e->status;
+    if (HDI_HAS_DIAGONAL && bound && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
     if (hdi_batches_make(&b, h) < 0) return h->e->status;
     b.deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
     return hdi_heat_items(h, hdi_direct_solve, &b);
@@ -18437,6 +18466,11 @@ static hdi_elim *hdi_krylov_elim(const hdi_heat_call *h) {
                     (double)h->ask.k * h->n_times * (double)L->nnz <= HDI_FEW_ENTRIES &&
                     hdi_order_kind(&order, L) == HD_ORDERING_NESTED_DISSECTION;
     return few ? &heat->few : &heat->elim;
+}
+
+/* The analysis that the method picked works with. */
+static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
+    return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
 static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
@@ -18807,9 +18841,10 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
                            double *d, int32_t *id, int64_t *fill) {
     double *edge_l = d + rim->n, *edge_b = edge_l + rim->n_edges;
     int64_t p, e = 0;
-    int32_t i, c;
+    int32_t i, c, conserves = lap->conserves;
     for (i = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
+        conserves = conserves && hdi_finite(lap->component_mass[lap->component[row]]);
         out->mass[i] = lap->mass[row];
         out->b_diag[i] = lap->b_diag[row];
         out->component[i] = rim->n > 0 ? 0 : lap->component[row];
@@ -18831,6 +18866,8 @@ static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_lapla
         }
     }
     rim->weight = d;
+    rim->conserves = conserves;
+    rim->rest = (hd_c64 *)(void *)(edge_b + rim->n_edges);
     rim->l = edge_l;
     rim->b = lap->B ? edge_b : NULL;
     rim->to = id;
@@ -18877,7 +18914,7 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
     out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
     out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
     out->component_mass = HDI_TAKE(keep, double, out->n_components);
-    out->mass = HDI_TAKE(keep, double, 5 * n + rim->n + 2 * m);
+    out->mass = HDI_TAKE(keep, double, 5 * n + 3 * (int64_t)rim->n + 2 * m);
     out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
     if (e->status >= 0) {
         d = out->mass + (lap->B ? 2 : 1) * n;
@@ -18906,6 +18943,7 @@ static void hdi_local_drop(hdi_local *l) {
     hd_context *ctx = l->heat.ctx;
     hdi_heat_free_factors(&l->heat);
     hdi_free(ctx, l->heat.sums);
+    hdi_free(ctx, l->heat.sets);
     memset(&l->heat, 0, sizeof l->heat);
     l->heat.ctx = ctx;
 }
@@ -18957,6 +18995,8 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
         own->limit = heat->limit;
         (void)hdi_heat_make(own, ball, e);
     }
+    if (e->status >= 0)
+        (void)hdi_heat_take_sets(own, heat->opts.rational ? 1 : 0, heat->opts.rational, e);
     hdi_laplacian_free(l->ball, heat->ctx);
     l->ball = ball;
     l->row = row;
@@ -18982,14 +19022,28 @@ static double hdi_local_hops(const hd_laplacian *lap) {
     return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
 }
 
-/* Finds the ball of item q, `reach` times as large as usual, or that of a row in the middle if items are not
- * known. */
+/* The radius in sqrt(t) beyond which the solutions of a set's poles, which fall like exp(-Re sqrt(theta)
+ * d/sqrt(t)), are below tol times the largest value of their sum. Without a set 1: see hdi_local_find. */
+static double hdi_local_reach(const hd_rational *set, double tol) {
+    double reach = set ? 0.1 : 1;
+    int32_t p;
+    for (p = 0; set && p < set->n_poles; p++) {
+        const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
+        const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
+        reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
+    }
+    return reach;
+}
+
+/* Finds the ball of item q, or that of a row in the middle if items are not known. reach: without a set as a
+ * multiple of what is usual. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
-    const double t = h->times[h->n_times - 1] / h->heat->scale;
+    const double root = sqrt(h->times[h->n_times - 1] / h->heat->scale);
+    const int poles = h->heat->poles_asked;
     hd_context *ctx = h->heat->ctx;
     hdi_terms c = hdi_terms_vertex(lap->vertex[lap->n_active / 2]);
-    double edge;
+    double edge, edges;
     int32_t i;
     hdi_local_clear(l, lap);
     if (h->ask.F) {
@@ -19005,8 +19059,9 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
     edge = hdi_local_edge(lap, l->at[0].row);
-    edge *= hdi_local_edges(lap, sqrt(t) / edge);     /* reach times this; more reach takes more edges */
-    return hdi_local_grow(l, lap, reach * edge, reach * hdi_local_hops(lap), most, ctx, h->e);
+    edges = poles ? hdi_local_edges(lap, 0) * (1 + reach * root / (4 * edge))
+                  : hdi_local_edges(lap, root / edge) * reach;   /* more reach takes more edges */
+    return hdi_local_grow(l, lap, edges * edge, (poles ? 1 : reach) * hdi_local_hops(lap), most, ctx, h->e);
 }
 
 /* The source of item q in terms of vertices of the ball. id, weight: room for it. */
@@ -19068,15 +19123,15 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     for (i = 0; i < l->n && h->ask.F; i++) field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)v[l->row[i]]];
     if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
     in.ask.terms = h->ask.F ? NULL : &c;
-    in.method = HD_METHOD_KRYLOV;
-    in.solver = HD_SOLVER_LANCZOS;
-    in.m = hdi_krylov_elim(&in);
+    in.solver = h->solver;
+    in.method = in.solver ? HD_METHOD_KRYLOV : HD_METHOD_DIRECT;
+    in.m = hdi_heat_analysis(&in);
     if (hdi_heat_analysed_in(&l->heat, in.m, in.e) >= 0) {
         in.lap = in.m->lap;
         rep->ordering = in.m->sym.ordering;
         rep->factor_nnz = in.m->sym.nnz;
         hdi_local_clip(l, &in, times);
-        (void)hdi_heat_by_krylov(&in);
+        (void)(HDI_HAS_POLE_FACTORS && !in.solver ? hdi_heat_by_direct(&in) : hdi_heat_by_krylov(&in));
     }
     return hdi_heat_end(&in);
 }
@@ -19108,6 +19163,7 @@ static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_
             *value = (uint64_t)v == list->order[p].key;
         hdi_ledger_note(list->ledger + h->now, *value, hdi_local_parts(rep, most));
     }
+    how->rational = hdi_max(how->rational, rep->evidence_rational);
     how->local = hdi_max(how->local, rep->evidence_local);
     how->solver = hdi_max(how->solver, rep->evidence_solver);
     how->rounding = hdi_max(how->rounding, rep->evidence_rounding);
@@ -19159,7 +19215,8 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
     const int32_t most = automatic ? heat->source->n_active / 2 : INT32_MAX;
     const size_t columns = h->time_column ? (size_t)h->ask.n_times : 1;
     const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
-    double reach = 1;
+    const hd_rational *set = heat->opts.rational;
+    double reach = hdi_local_reach(set, wanted), tol = wanted;
     int32_t tries;
     for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
         hdi_free(heat->ctx, *U);
@@ -19169,7 +19226,9 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
         *U = HDI_NEW(heat->ctx, double, *ld * columns, h->e);
         if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
         if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_local <= wanted) return h->e->status;
-        reach = hdi_local_more(reach, tries, rep->error_local / wanted);
+        tol *= wanted / hdi_min(rep->error_local, 1e16 * wanted);
+        reach = set ? hdi_max(hdi_local_reach(set, tol), (tries > 1 ? 1.5 : 1.05) * reach)
+                    : hdi_local_more(reach, tries, rep->error_local / wanted);
     }
     if (automatic && h->e->status >= 0)
         hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
@@ -19198,9 +19257,10 @@ static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
     hdi_free(ctx, U);
     if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
     if (l->n == 0 || h->e->status < 0) return;
-    if (h->ask.list) rep.error_bound = rep.error_local = rep.error_solver = rep.error_rounding = 0;
+    if (h->ask.list)
+        rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
-    rep.solver = HD_SOLVER_LANCZOS;
+    rep.solver = h->solver;
     rep.reason = h->rep->reason;
     rep.n_touched = l->n;
     hdi_report_merge(h->rep, &rep);
@@ -19230,8 +19290,9 @@ enum { HDI_LOCAL_FROM = 4096 };
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
-    return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->poles_asked &&
-           !heat->iterations_asked && h->times[0] > 0 && heat->source->b_ratio > 0 &&
+    return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->iterations_asked &&
+           (!heat->poles_asked || (HDI_HAS_POLE_FACTORS && heat->opts.rational)) &&
+           h->times[0] > 0 && heat->source->b_ratio > 0 &&
            (asked || !hdi_query_fields(h->ask.query) ||
             (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
@@ -19240,25 +19301,27 @@ static int hdi_local_can(const hdi_heat_call *h) {
  * of the best other method, of which auto spares a small part to look. */
 static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
+    const hd_rational *set = h->heat->opts.rational;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
     const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * least);
     const int32_t most = asked ? lap->n_active : (int32_t)room;
     hdi_local *l;
     hdi_fill f;
-    double n, steps;
+    double n, steps, packs = set ? hdi_high32(1, hdi_set_packs(set)) : 0;
     if (!hdi_local_can(h) || (!asked && lap->n_active < HDI_LOCAL_FROM)) return;
     l = hdi_local_open(h->heat, h->e);
-    if (l) (void)hdi_local_find(h, l, 0, 1, most);
+    if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(set, HDI_LOCAL_SHARE * h->heat->opts.tol), most);
     if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     else if (l && h->e->status >= 0) c->possible = l->n <= most;
     if (!c->possible) return;
     n = hdi_query_fields(h->ask.query) && !h->ask.F ? lap->n_active : l->n;
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
-    c->flops = h->ask.k * (f.flops + steps * 4 * f.nnz);
-    c->bytes = 8 * f.stored + (8 * steps + 400) * n;
-    c->seconds = h->ask.k * (f.analysis + HDI_LOCAL_MAKE * n + f.flops / HDI_RATE_REAL +
-                             steps * (16 * f.nnz + 100 * n) / HDI_RATE_BYTES);
+    if (set) hdi_fill_cost(f, HDI_PACK, packs, packs, 0, c);
+    else hdi_fill_cost(f, 1, 1, steps, 0, c);
+    c->flops *= h->ask.k * (set ? h->n_times : 1);
+    c->bytes = set ? 64 * packs * f.stored + 1000 * n : 8 * f.stored + (8 * steps + 400) * n;
+    c->seconds = h->ask.k * (f.analysis + HDI_LOCAL_MAKE * n + c->seconds) * (set ? h->n_times : 1);
 }
 
 /* ---- choice of the method ---- */
@@ -19293,11 +19356,6 @@ static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
         if (by[q].possible) least = hdi_min(least, by[q].seconds);
     }
-}
-
-/* The analysis that the method picked works with. */
-static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
-    return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
 /* Takes the cheapest method that fits into `room` bytes, or else iterations. */
@@ -19383,7 +19441,8 @@ static hd_status hdi_heat_engine(hdi_heat_call *h) {
     }
     h->rep->method = h->method;
     h->rep->solver = h->solver = h->method == HD_METHOD_ITERATIVE ? hdi_heat_solver(h, h->t)
-                               : h->method >= HD_METHOD_KRYLOV ? HD_SOLVER_LANCZOS : HD_SOLVER_AUTO;
+                               : h->method >= HD_METHOD_KRYLOV && !heat->poles_asked ? HD_SOLVER_LANCZOS
+                               : HD_SOLVER_AUTO;
     h->rep->precond = h->solver == HD_SOLVER_AUTO || h->solver == HD_SOLVER_LANCZOS ? HD_PRECOND_NONE
                       : heat->opts.precond;
     return HD_OK;
@@ -20078,7 +20137,7 @@ static hd_status hdi_columns_together(hdi_task *task, char *done, hd_report *one
     if (!HDI_HAS_DIRECT || hdi_heat_sort_times(h, 1, done) < 0 || h->n_times == 0) return h->e->status;
     if (h->times[0] == 0) return HD_OK;
     if (hdi_heat_engine(h) >= 0) {
-        if (h->method < HD_METHOD_KRYLOV || h->equal) return HD_OK;
+        if (h->method < HD_METHOD_KRYLOV || h->equal || h->heat->poles_asked) return HD_OK;
         (void)hdi_engines[h->method].run(h);
     }
     if (h->e->status < 0) return h->e->status;
@@ -20234,7 +20293,8 @@ static void hdi_heat_built(const hd_heat_opts *o, hd_error *e) {
         (void)HDI_LEFT_OUT(e, DIRECT, "factorisations");
     else if (!HDI_HAS_LOCAL && o->method == HD_METHOD_LOCAL)
         (void)HDI_LEFT_OUT(e, LOCAL, "method local");
-    else if (!HDI_HAS_POLE_FACTORS && o->method == HD_METHOD_DIRECT)
+    else if (!HDI_HAS_POLE_FACTORS &&
+             (o->method == HD_METHOD_DIRECT || (o->method == HD_METHOD_LOCAL && poles)))
         (void)HDI_LEFT_OUT(e, POLE_FACTORS, "method direct");
     else if (!HDI_HAS_ITERATIVE && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
         (void)HDI_LEFT_OUT(e, ITERATIVE, "iterations");
@@ -20256,8 +20316,9 @@ static hd_status hdi_heat_check(const hd_heat_opts *o, hd_error *e) {
     hdi_refuse(o->max_iterations < 0, "heat: max_iterations is negative", e);
     hdi_refuse(!hdi_finite(o->cut) || o->cut < 0 || o->cut >= 1, "heat: cut is not in [0, 1)", e);
     hdi_refuse_ordering(o->ordering, o->perm, "heat: unknown ordering", e);
-    hdi_refuse(o->method >= HD_METHOD_KRYLOV && (o->rational || o->poles || o->degree),
-               "heat: the methods krylov and local have no use for poles or a degree", e);
+    hdi_refuse(o->method >= HD_METHOD_KRYLOV &&
+               (o->poles || o->degree || (o->rational && o->method == HD_METHOD_KRYLOV)),
+               "heat: krylov has no use for poles or a degree, and local only for rational", e);
     hdi_refuse(o->method >= HD_METHOD_DIRECT && (o->solver || o->precond),
                "heat: solver and precond belong to the iterative method", e);
     hdi_refuse(o->rational && o->solver == HD_SOLVER_LANCZOS, "heat: Lanczos has no use for a pole set", e);
@@ -21113,7 +21174,8 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, const hdi_diagonals *query)
 /* Checks that there is selected inversion, and that it is allowed. */
 static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     if (!HDI_HAS_DIAGONAL) return HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
-    if (h->heat->opts.method == HD_METHOD_LOCAL && h->heat->source->b_ratio > 0) return HD_OK;
+    if (h->heat->opts.method == HD_METHOD_LOCAL && h->heat->source->b_ratio > 0 && !h->heat->opts.rational)
+        return HD_OK;
     return hdi_direct_only(h);
 }
 
@@ -24524,8 +24586,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
     hdi_call c;
     if (hdi_enter(&c, heat ? heat->ctx : NULL, heat && (count <= 0 || sets), err) < 0) return c.e->status;
     hdi_refuse(count < 0, "heat: the number of sets is negative", c.e);
-    hdi_refuse(count > 0 && (o->method >= HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
-               "heat: krylov, local and Lanczos have no use for a pole set", c.e);
+    hdi_refuse(count > 0 && (o->method == HD_METHOD_KRYLOV || o->solver == HD_SOLVER_LANCZOS),
+               "heat: krylov and Lanczos have no use for a pole set", c.e);
     if (c.e->status >= 0 && count > 0) {
         hd_heat_opts asked = *o;
         asked.rational = sets;

@@ -656,9 +656,9 @@ needs --t :: trace ico.obj
 times > 0 :: trace ico.obj --t 0
 --filter takes no --poles :: kernel ico.obj --source 0 --filter heat:1 --poles kernel
 --filter takes heat:T, wave:E,SIGMA :: hks ico.obj --filter sine:3
-read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative}
+read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative|--method local}
 no {--t|--degree} :: hks ico.obj --filter heat:1 {1} 4
-no {--method krylov|--method local|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
+no {--method krylov|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
 no --method local :: {hks|distance --source 1|sample --count 2} ico.obj --filter heat:1 --method local
 no --definition :: distance ico.obj --source 1 --filter heat:1 --definition commute
 --filter :: geodesic ico.obj --source 0 --filter heat:1

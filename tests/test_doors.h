@@ -72,7 +72,6 @@ static const door_row door_rows[] = {
     {"diagonal distance sample sample_from distance_from", BAD "need the direct method", NULL, "heat=heat2"},
     {"distance", BAD "need the direct method", NULL, "heat=heat2 commute"},
     {"distance sample", BAD "need the direct method", NULL, "heat=heat4 kind=2; heat=heat4 kind=3"},
-    {"set_rational", BAD "", NULL, "heat=heat4"},
     {"apply derivative columns columns_sparse columns_from entries pairs diagonal distance distance_from sample sample_from", HD_OK, "", NULL, "heat=heat4; heat=heat4 f=u"},
     {"solve inverse", BAD "not a real one", NULL, "ldl=ldl2"},
     {"solve_c inverse_c", BAD "not a complex one", NULL, "ldl=ldl3"},
@@ -178,7 +177,7 @@ static const door_row door_rows[] = {
     {"plan", BAD "poles are uniform", NULL, "ho.poles=-1; ho.poles=3"},
     {"plan", BAD "", "value=1", "ho.poles=2 ho.degree=1"},
     {"plan", BAD "", NULL, "ho.degree=-1; ho.degree=15; lanczos ho.rational=set"},
-    {"plan", BAD "no use for poles", NULL, "krylov ho.rational=set; krylov ho.poles=1; krylov ho.degree=7; local ho.rational=set; local ho.degree=9"},
+    {"plan", BAD "no use for poles", NULL, "krylov ho.rational=set; krylov ho.poles=1; krylov ho.degree=7; local ho.poles=1; local ho.degree=9"},
     {"plan", BAD "belong to the iterative", NULL, "krylov cocg; local cocg; local jacobi; direct cocg; direct jacobi"},
     {"plan", BAD "cut is not in", NULL, "ho.cut=-1e-3; ho.cut=1; ho.cut=nan"},
 

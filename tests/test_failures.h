@@ -28,6 +28,7 @@ static const fail_case fail_cases[] = {
     {"iterative cocg set=set2 time=set2_time | set_rational column", FAIL_GOES_ON},
     {"direct set_rational time=set_time column set=set2 time=set2_time | set_rational column", FAIL_GOES_ON},
     {"direct set_rational time=set_time column k=6 | n_sets=0 set=NULL set_rational columns", FAIL_GOES_ON},
+    {"local set_rational time=set_time column | set=set2 time=set2_time set_rational column", FAIL_GOES_ON},
     {"direct n_sets=2 set=both | set_rational n_times=0 diagonal", 0}, {"direct t=set_t set_rational diagonal", 0},
     {"direct set=both n_sets=2 set_rational n_times=0 operator u=NULL diagonal", 0}, {"n_times=3 times_auto", 0}, {"eigenpairs", 0},
     {"voronoi so.count=21 eigenpairs", 0}, {"held so.count=5 eigenpairs", 0}, {"so.count=0 so.below=8 eigenpairs", 0},

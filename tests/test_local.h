@@ -154,7 +154,7 @@ static void loc_auto(void) {
     hd_heat *heat, *other;
     hd_report rep;
     const int32_t v = 150 * 75 + 75;
-    double *u = KIT_NEW(double, s->n), *w = KIT_NEW(double, s->n), *xyz = KIT_NEW(double, 3 * s->n), t;
+    double *u = KIT_NEW(double, s->n), *w = KIT_NEW(double, s->n), *xyz = KIT_NEW(double, 3 * s->n), t, heat_out = 0, heat_all = 0;
     uint64_t before;
     hd_heat_opts o = {0};
     int32_t i;
@@ -169,6 +169,8 @@ static void loc_auto(void) {
     CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t, v, u, &rep, NULL) == HD_OK);
     CHECK(rep.method == HD_METHOD_LOCAL && rep.n_touched < s->n / 8 && rep.error_bound < 2e-7);
     CHECK(ctx.bytes_peak - before < 5000 * (uint64_t)rep.n_touched);
+    for (i = 0; i < s->n; i++) heat_out += lap->mass[lap->row[i]] * u[i], heat_all += fabs(lap->mass[lap->row[i]] * u[i]);
+    CHECK_MSG(rep.mass_drift > 0 && fabs(rep.mass_drift - fabs(heat_out - lap->mass[lap->row[v]]) / heat_all) < 1e-13, "drift %g", rep.mass_drift);
     CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, 3000 * t, v, w, &rep, NULL) >= 0 && rep.method != HD_METHOD_LOCAL && rep.error_local == 0);
     for (i = 0; i < 3 * s->n; i++) xyz[i] = s->xyz[i] * (1 + 1e-9 * sin(i));     /* so little that the ball stays */
     CHECK(hd_laplacian_update(lap, MESH_TRIANGLES(xyz, s->n, s->tri, s->n_tri), NULL) == HD_OK);
@@ -520,6 +522,23 @@ static void loc_distances(const char *spec, hd_distance_kind kind, const char *p
     }
 }
 
+/* Where one patch is all of the mesh its diagonal leaves nothing out: the error of d^2 is that of its column on a ball, twice. */
+static void loc_distance_column(const char *spec) {
+    const int32_t mark = kit_mark();
+    const hd_laplacian *lap = kit_pair(spec);
+    const int32_t v = lap->n / 3;
+    hd_heat *local = kit_heat(lap, "method=local tol=1e-12");    /* that of columns within distances */
+    const double t = lap->h * lap->h / 2;
+    double *d = KIT_NEW(double, lap->n), *u = KIT_NEW(double, lap->n), own;
+    hd_report rep, column;
+    CHECK(hd_heat_distance(local, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &v), d, 0, &rep, NULL) >= 0);
+    CHECK(hd_heat_column(local, HD_KERNEL_SYMMETRIC, 2 * t, v, u, &column, NULL) >= 0 && column.n_touched < lap->n);
+    CHECK_MSG(rep.n_patches == 1 && rep.n_touched == lap->n, "%s: %d patches", spec, (int)rep.n_patches);
+    own = 2 * column.error_bound * dense_max_abs(u, lap->n) / pow(dense_max_abs(d, lap->n), 2);
+    CHECK_MSG(own > 1e-12 && rep.error_bound > own, "%s: %g by the column, %g in all", spec, own, rep.error_bound);
+    kit_release(mark);
+}
+
 /* What has no local answer is refused. */
 static void loc_refused(void) {
     const hd_laplacian *lap = kit_pair("ico/3 fem");
@@ -531,26 +550,115 @@ static void loc_refused(void) {
     hd_error e;
     memset(u, 0, (size_t)lap->n * sizeof *u);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
-    CHECK(hd_heat_set_rational(heat, 1, &set, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_apply(heat, 1, &t, 1, u, 0, u, 0, NULL, &e) == HD_OK && dense_max_abs(u, lap->n) == 0);
+    CHECK(hd_heat_set_rational(heat, 1, &set, &e) == HD_OK);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
 }
 
-/* A set of the caller's own ends it, until it is taken away. */
+/* A set of the caller's own serves for many times, and in the ball that is there, until it is taken away. */
 static void loc_own_set(void) {
     const hd_laplacian *lap = kit_pair("flat/72/72/0.3 fem");
     hd_heat *heat = kit_heat(lap, "");
-    const double t = lap->h * lap->h;
-    double *u = KIT_NEW(double, lap->n), *w = KIT_NEW(double, lap->n);
+    const double t = lap->h * lap->h, ts[2] = {t, t / 2};
+    const int32_t v = 9;
+    double *u = KIT_NEW(double, lap->n), *w = KIT_NEW(double, 2 * (int64_t)lap->n), *x = KIT_NEW(double, lap->n);
     hd_rational set;
-    hd_report rep;
-    CHECK(hd_rational_exp(&set, HD_POLES_UNIFORM, 10, NULL) == HD_OK);
+    hd_report rep, more;
+    CHECK(hd_rational_exp(&set, HD_POLES_KERNEL, 10, NULL) == HD_OK);
     CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 9, u, &rep, NULL) == HD_OK && rep.method == HD_METHOD_LOCAL);
     CHECK(hd_heat_set_rational(heat, 1, &set, NULL) == HD_OK);
-    CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 9, w, &rep, NULL) >= 0 && rep.method != HD_METHOD_LOCAL && rep.error_local == 0);
+    CHECK(hd_heat_columns(heat, HD_KERNEL_OPERATOR, 2, ts, VERTICES(1, &v), w, 0, &rep, NULL) >= 0 && rep.method == HD_METHOD_LOCAL);
+    CHECK(rep.poles == HD_POLES_OWN && rep.error_local > 0 && rep.evidence_local == HD_EVIDENCE_PROVEN);
     CHECK(dense_max_diff(u, w, lap->n) < 1e-6);
+    CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t, v, x, &more, NULL) >= 0 && memcmp(x, w, (size_t)lap->n * sizeof *x) == 0);
+    CHECK(more.error_bound <= rep.error_bound);
+    set.a[0].re *= 0.9;                          /* the same poles */
+    CHECK(hd_heat_set_rational(heat, 1, &set, NULL) == HD_OK && hd_heat_column(heat, HD_KERNEL_OPERATOR, t, v, x, NULL, NULL) >= 0);
+    CHECK(hd_heat_column(filt_plan(lap, &set, "method=direct"), HD_KERNEL_OPERATOR, t, v, w, NULL, NULL) >= 0 && dense_max_diff(x, w, lap->n) < 1e-6);
     CHECK(hd_heat_set_rational(heat, 0, NULL, NULL) == HD_OK);
     CHECK(hd_heat_column(heat, HD_KERNEL_OPERATOR, t, 9, w, &rep, NULL) == HD_OK && rep.method == HD_METHOD_LOCAL);
     CHECK(memcmp(u, w, (size_t)lap->n * sizeof *u) == 0);
+}
+
+/* 1/(1 + a lambda)^2, and 1 less that. */
+static double loc_square(double lambda, void *user) {
+    const double x = 1 + *(const double *)user * lambda;
+    return 1 / (x * x);
+}
+
+static double loc_high(double lambda, void *user) { return 1 - loc_square(lambda, user); }
+
+/* Answers by the set of a filter on a ball and on all of the mesh: a column of K_t or k_t, a field, its adjoint, entries, or a sparse
+ * row, which is a column. Returns the error over its bound, or 0 where that may be rounding. */
+static double loc_filter_call(const hd_laplacian *lap, hd_heat *local, hd_heat *whole, int32_t kind, int32_t v, const char *what) {
+    const int32_t mark = kit_mark(), n = lap->n, i[3] = {v, (v + 1) % n, (v + n / 2) % n}, j[3] = {v, v, v};
+    double *room = KIT_NEW(double, 3 * (int64_t)n), *f = room + 2 * n, size, off, sure;
+    hd_report rep[2];
+    hd_csr row = {0};
+    hd_error e;
+    int32_t q, p;
+    memset(room, 0, 3 * (size_t)n * sizeof *room);
+    f[v] = 1;
+    for (q = 0; q < 2; q++) {
+        hd_heat *heat = q ? whole : local;
+        double *u = room + q * n;
+        if (kind < 2) hd_heat_columns(heat, (hd_kernel)kind, 0, NULL, VERTICES(1, &v), u, 0, rep + q, &e);
+        else if (kind == 2) hd_heat_apply(heat, 0, NULL, 1, f, 0, u, 0, rep + q, &e);
+        else if (kind == 3) hd_heat_adjoint(heat, 0, NULL, 1, f, 0, u, 0, rep + q, &e);
+        else if (kind == 4) hd_heat_entries(heat, HD_KERNEL_SYMMETRIC, 0, NULL, 3, i, j, u, rep + q, &e);
+        else hd_heat_columns_sparse(heat, HD_KERNEL_SYMMETRIC, 0, NULL, VERTICES(1, &v), &row, rep + q, &e);
+        if (!CHECK_MSG(rep[q].status >= 0, "%s: %s", what, e.text)) return 0;
+        for (p = 0; kind == 5 && p < row.nnz; p++) u[row.col[p]] = row.val[p];
+    }
+    hd_csr_free(&row, NULL);
+    size = dense_max_abs(room + n, n);
+    off = dense_max_diff(room, room + n, n);
+    sure = rep[0].error_rounding + rep[1].error_rounding;
+    CHECK_MSG(rep[0].method == HD_METHOD_LOCAL && rep[0].solver == HD_SOLVER_AUTO && rep[0].poles == HD_POLES_OWN, "%s", what);
+    CHECK_MSG(rep[0].evidence_local == HD_EVIDENCE_PROVEN && rep[0].error_bound >= rep[0].error_local && rep[0].mass_drift == 0, "%s", what);
+    CHECK_MSG(off <= (rep[0].error_local + sure) * (size + off) * 1.000001, "%s: error %g, bound %g", what, off / size, rep[0].error_local);
+    CHECK_MSG(rep[0].error_local < 1.1e-7 && rep[0].n_touched < n / 2, "%s: bound %g, %d of %d vertices", what, rep[0].error_local,
+              (int)rep[0].n_touched, (int)n);
+    kit_release(mark);
+    return off > 1e-12 * size ? rep[0].error_local / (off / size) : 0;
+}
+
+/* Filters on a mesh of which their columns reach a part. Bounds are not far above the errors. */
+static void loc_filters(const char *spec, double unit) {
+    enum { FILTERS = 5, KINDS = 6 };
+    const int32_t mark = kit_mark();
+    const hd_laplacian *lap = kit_pair(spec);
+    const double t = unit * lap->h * lap->h, square = t / 4;
+    hd_filter list[FILTERS] = {{0, HD_FILTER_WAVE, 0, 0.5, NULL, NULL, 1e-7, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_OWN, 0, 0, loc_square, NULL, 1e-6, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_OWN, 0, 0, loc_high, NULL, 1e-6, 0, 0, 0, 1, 0},
+                               {0, HD_FILTER_MEXICAN_HAT, 0, 0, NULL, NULL, 1e-7, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_HEAT, 0, 0, NULL, NULL, 1e-8, 0, 0, 0, 0, 0}};
+    hd_heat *local = kit_heat(lap, "method=local"), *whole = kit_heat(lap, "method=direct");
+    double ratio[FILTERS * KINDS], up;
+    hd_rational set[2];
+    hd_error e;
+    int32_t q, kind, n = 0, i;
+    char what[96];
+    list[0].a = log(4 / t);
+    list[1].user = list[2].user = (void *)&square;
+    list[3].a = list[4].a = 2 * t;
+    for (q = 0; q < FILTERS; q++) {
+        CHECK_MSG(hd_rational_fit(set, 1, list + q, lap->lambda_max, NULL, &e) >= 0, "%s", e.text);
+        set[1] = *set;                           /* the first counts */
+        set[1].a[0].re += 1;
+        CHECK(hd_heat_set_rational(local, 2, set, NULL) == HD_OK && hd_heat_set_rational(whole, 1, set, NULL) == HD_OK);
+        for (kind = 0; kind < KINDS; kind++) {
+            snprintf(what, sizeof what, "%s, filter %d, call %d", spec, (int)q, (int)kind);
+            ratio[n] = loc_filter_call(lap, local, whole, kind, lap->n / 7 * (kind + 1) + q, what);
+            for (i = n++; i > 0 && ratio[i] < ratio[i - 1]; i--) up = ratio[i], ratio[i] = ratio[i - 1], ratio[i - 1] = up;
+        }
+    }
+    for (q = 0; q < n && ratio[q] == 0;) q++;
+    CHECK_MSG(n - q >= n / 3 && ratio[(q + n) / 2] < 300, "%s: %d errors seen, a bound is %g times its error", spec, (int)(n - q),
+              q < n ? ratio[(q + n) / 2] : 0);
+    kit_release(mark);
 }
 
 static void test_local(void) {
@@ -581,6 +689,10 @@ static void test_local(void) {
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 fem", HD_DISTANCE_WEIGHTED, "method=local");
     loc_distances("inert/70/0 vor+held", HD_DISTANCE_CLASSICAL, "method=local");
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 vor", HD_DISTANCE_WEIGHTED, "");
+    loc_distance_column("bumpy/4/1 vor");
+    loc_distance_column("bumpy/4/1 fem");
     loc_refused();
+    loc_filters("bumpy/5/1 vor", 1);
+    if (!CASES_FEW) loc_filters("bumpy/5/1 fem", 0.5);
     loc_own_set();
 }

@@ -1223,12 +1223,13 @@ static int check_method(const options *o)
     if (no_poles && (o->degree || o->poles))
         return fail(USAGE, "%s takes no --method %s, which has no use for it",
                     o->degree ? "--degree" : "--poles", name);
-    if (o->filter && no_poles)
+    if (o->filter && (o->method == HD_METHOD_KRYLOV || (o->method == HD_METHOD_LOCAL && inverts)))
         return fail(USAGE, "--filter takes no --method %s: its poles are made for it, and it needs them", name);
     if (o->filter && (o->degree || o->poles || o->solver == HD_SOLVER_LANCZOS))
         return fail(USAGE, "--filter takes no %s: its poles are made for it, and it needs them",
                     o->degree ? "--degree" : o->poles ? "--poles" : "--solver lanczos");
-    if (o->filter && o->command == CMD_PAIRS && (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
+    if (o->filter && o->command == CMD_PAIRS &&
+        (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_LOCAL || o->solver || o->precond))
         return fail(USAGE,
                     "--method takes auto or direct here: distances of a filter are read off the factors");
     if ((no_poles || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
