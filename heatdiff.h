@@ -21571,8 +21571,8 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     return HD_OK;
 }
 
-/* Does auto take patches for diagonals at the query's times, times factor? Only if a margin is small beside the
- * mesh is it worth while to cut it. */
+/* Does auto take patches for diagonals at the query's times, times factor? Only if a margin is small beside
+ * the mesh is it worth while to cut it. */
 static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
@@ -21685,7 +21685,8 @@ static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, con
         if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
     if (to.n_rows < HDI_PATCH_LEAST) return 0;
     if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
-    else if (!hdi_patches_pay(&x, &to, 1) || hdi_patches_run(&x, HDI_PATCHES_PAY) < 0) return h->e->status < 0;
+    else if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
+    else (void)hdi_patches_run(&x, HDI_PATCHES_PAY);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
     return 1;
@@ -23081,8 +23082,9 @@ static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query
         return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
     if (query->by == HDI_BY_SPECTRUM)
         return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    if (query->by == HDI_BY_INVERSION ? hdi_diagonal_check(h) < 0
-                                      : query->by == HDI_BY_GROUND && hdi_direct_only(h) < 0) return h->e->status;
+    if (query->by == HDI_BY_INVERSION) (void)hdi_diagonal_check(h);
+    if (query->by == HDI_BY_GROUND) (void)hdi_direct_only(h);
+    if (h->e->status < 0) return h->e->status;
     return query->by == HDI_BY_GROUND ? HD_OK : hdi_times_check(h, n_times, t, query->by != HDI_BY_SOLVES);
 }
 
