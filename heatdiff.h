@@ -21458,9 +21458,10 @@ static double hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t cor
 
 /* Room for factors of a patch, and if it is easily there for their inversion: that of patches before if it is
  * large enough. */
-static hd_status hdi_patch_room(hdi_patches *x, hd_heat *own) {
+static hd_status hdi_patch_room(hdi_patches *x, hdi_heat_call *in) {
+    hd_heat *own = in->heat;
     hd_context *ctx = own->ctx;
-    hd_error *e = x->to->task.h->e;
+    hd_error *e = in->e;
     hdi_scope need = hdi_scope_counting();
     hdi_factor f;
     hdi_inverse z;
@@ -21518,7 +21519,7 @@ static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_
         in.core = core;
         in.method = HD_METHOD_DIRECT;
         in.diagonal = 1;
-        if (hdi_patch_room(x, own) >= 0) in.left_out = hdi_patch_off(x, &in, core) / own->scale;
+        if (hdi_patch_room(x, &in) >= 0) in.left_out = hdi_patch_off(x, &in, core) / own->scale;
         if (in.e->status >= 0) (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
