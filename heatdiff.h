@@ -15130,12 +15130,11 @@ static int32_t hdi_terms_sum(const int32_t *v, hdi_pair *order, int32_t n, const
     for (q = 0; q < n; q++) {
         const int32_t at = (int32_t)order[q].key;
         if (part[order[q].id] == 0) continue;
-        if (m > 0 && vertex[m - 1] == at) {
-            weight[m - 1] += part[order[q].id];
-        } else {
+        if (m == 0 || vertex[m - 1] != at) {
             vertex[m] = at;
-            weight[m++] = part[order[q].id];
+            weight[m++] = 0;
         }
+        weight[m - 1] += part[order[q].id];
     }
     return m;
 }
@@ -15226,7 +15225,7 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
     hdi_factor factor;
-    char *held;                  /* [n] */
+    char *held, *loose;          /* [n] [n_components] with a vertex that is held */
     double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
     /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
     double *trace;
@@ -15298,19 +15297,17 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
         double size = fabs(b[i]), rest = 0;
-        r[i] = b[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
+        r[i] = g->held[i] ? 0 : b[i];
+        if (g->held[i]) continue;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
             r[i] -= v;
             size += fabs(v);
-            rest += lap->L.val[p];
+            rest += conserves ? 0 : lap->L.val[p];
         }
-        if (g->held[i]) r[i] = 0;
-        else if (!conserves) r[i] -= rest * x[i];
-        size += conserves ? 0 : fabs(rest * x[i]);
-        if (!g->held[i])
-            off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
-                sqrt(hdi_max(0, g->diag[i]));
+        r[i] -= rest * x[i];
+        size += fabs(rest * x[i]);
+        off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
     }
 }
 
@@ -15331,8 +15328,15 @@ static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const dou
 
 /* Doubles of a ground's arrays, which begin with diag. */
 static uint64_t hdi_ground_size(const hdi_elim *m) {
-    const uint64_t n = (uint64_t)m->sym.n;
-    return 3 * n + 2 * (uint64_t)m->lap->n_components + n / sizeof(double) + 1;
+    const uint64_t n = (uint64_t)m->sym.n, n_comp = (uint64_t)m->lap->n_components;
+    return 3 * n + 2 * n_comp + (n + n_comp) / sizeof(double) + 1;
+}
+
+/* Values of the pair grounded, factorised and inverted: sums of the inverses' diagonals by coef. */
+static hd_status hdi_ground_invert(hdi_elim *m, hdi_factor *f, const hdi_values *v, const double *coef,
+                                   double *out, hdi_scope *s) {
+    if (hdi_progress(m->ctx, "factor", 0, s->e) < 0 || hdi_factor_run(f, v, s->e) < 0) return s->e->status;
+    return hdi_elim_inverse_diagonal(m, f, coef, out, s);
 }
 
 /* Factor, diag(G) and the trace. */
@@ -15342,41 +15346,38 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const double one = 1;
     const size_t n = (size_t)lap->n_active, n_comp = (size_t)lap->n_components;
     double *val;
-    char *loose;
     hdi_values v;
     int32_t i;
     int64_t p;
     if (g->diag) return HD_OK;
-    val = HDI_TAKE(&s, double, lap->L.nnz);
-    loose = HDI_TAKE(&s, char, n_comp);
-    if (e->status >= 0) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
+    memset(&v, 0, sizeof v);
+    v.real = val = HDI_TAKE(&s, double, lap->L.nnz);
+    if (val) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
     if (g->diag && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         g->mean = g->diag + n;
         g->form = g->mean + n;
         g->trace = g->form + n;
         g->mean_off = g->trace + n_comp;
         g->held = (char *)(void *)(g->mean_off + n_comp);
+        g->loose = g->held + n;
         memset(g->trace, 0, n_comp * sizeof *g->trace);
-        hdi_ground_components(lap, loose);
+        hdi_ground_components(lap, g->loose);
         for (i = lap->n_active; i-- > 0;) {      /* the last of each component */
-            g->held[i] = loose[lap->component[i]];
-            if (g->held[i]) loose[lap->component[i]] = 0;
+            char *loose = g->loose + lap->component[i];
+            g->held[i] = *loose == 1;
+            if (*loose) *loose = 2;
         }
         hdi_ground_values(m, g, 0, val, NULL);
-        memset(&v, 0, sizeof v);
-        v.real = val;
-        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
-            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0) {
-            if (g->factor.all.negative) hdi_not_semidefinite(e);
-            for (i = 0; i < lap->n_active; i++) {
-                double size = lap->B ? 0 : lap->mass[i];
-                for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
-                if (g->held[i]) g->diag[i] = 0;
-                g->trace[lap->component[i]] += hdi_max(0, g->diag[i]) * size;
-            }
-            for (i = 0; i < lap->n_components; i++) g->largest_trace = hdi_max(g->largest_trace, g->trace[i]);
-            g->traced = 1;
+        if (hdi_ground_invert(m, &g->factor, &v, &one, g->diag, &s) >= 0 && g->factor.all.negative)
+            hdi_not_semidefinite(e);
+        for (i = 0; i < lap->n_active && e->status >= 0; i++) {
+            double size = lap->B ? 0 : lap->mass[i], *trace = g->trace + lap->component[i];
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
+            g->diag[i] = g->held[i] ? 0 : hdi_max(0, g->diag[i]);
+            *trace += g->diag[i] * size;
+            g->largest_trace = hdi_max(g->largest_trace, *trace);
         }
+        g->traced = 1;
     }
     if (e->status < 0) hdi_ground_free(g, m->ctx);
     return hdi_scope_end(&s);
@@ -15391,13 +15392,11 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const hd_laplacian *lap = m->lap;
     const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
     double *work, *b, coef[HDI_PACK] = {0};
-    char *loose;
     hdi_factor pack;
     hdi_values v;
     hd_c64 *val;
     int32_t i;
     if (g->formed) return HD_OK;
-    loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
@@ -15406,18 +15405,16 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
+        (void)hdi_ground_invert(m, &pack, &v, coef, g->form, &s);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) b[i] = g->held[i] ? 0 : lap->mass[i];
     hdi_ground_refined(m, g, b, NULL, g->mean, g->mean_off, b + lap->n_active, work);
-    hdi_ground_components(lap, loose);
     for (i = 0; i < lap->n_active; i++) {
-        if (!loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
-        g->form[i] = g->held[i] ? 0
-                     : hdi_max(0,
-                               g->form[i] - g->mean[i] * g->mean[i] / lap->component_mass[lap->component[i]]);
+        const double mass = lap->component_mass[lap->component[i]];
+        if (!g->loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
+        g->form[i] = g->held[i] ? 0 : hdi_max(0, g->form[i] - g->mean[i] * g->mean[i] / mass);
     }
     g->formed = 1;
     return hdi_scope_end(&s);
@@ -15440,7 +15437,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
         const double w = hdi_terms_weight(from, i);
         b[row] = g->held[row] ? 0 : w;
         ws += forms ? w * g->mean[row] : 0;
-        root += fabs(w) * sqrt(hdi_max(0, g->diag[row]));
+        root += fabs(w) * sqrt(g->diag[row]);
     }
     hdi_ground_refined(m, g, b, NULL, u, by, r, sweep);
     off = by[c];
@@ -16551,55 +16548,45 @@ static double hdi_decayed(const hdi_bank *b, double x) { return x * b->root * b-
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
 
-static hdi_bank hdi_bank_at(const hdi_modes *of, double t, double *weight) {
+/* Takes up a time, or without one the power. d^2 is made of squares of the weights for d. */
+static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
+    const hdi_modes *of = a->of;
     const hd_spectrum *s = &of->s;
+    const int32_t first = a->power ? hdi_low32(s->n_constant, s->count) : of->first;
+    const double low = first < s->count ? hdi_max(0, s->value[first]) : 0;
     const double next = s->next < HUGE_VAL ? hdi_max(0, s->next - of->off_norm) : HUGE_VAL;
     const double gap = hdi_max(0, next - of->low);
-    hdi_bank a;
+    hdi_bank *b = &a->bank;
+    double *weight = b->weight, *inner = weight + s->count, *side = inner + s->count;
     int32_t q;
-    memset(&a, 0, sizeof a);
-    a.weight = weight;
-    a.inner_of = weight + s->count;
-    a.side_of = a.inner_of + s->count;
-    a.first = of->first;
-    a.mixed = hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
-    a.square = a.mixed * a.mixed;
-    a.twice = hdi_bound_times(a.mixed, hdi_bound_times(of->off_norm, t));
-    for (q = a.first; q < s->count; q++) {
-        const double over = hdi_max(0, s->value[q] - of->low);
-        weight[q] = exp(-hdi_bound_times(t, over));
-        a.inner_of[q] = hdi_bound_times(of->off[q], hdi_time_within(t, over));
-        a.side_of[q] = hdi_bound_times(weight[q] * of->off[q], hdi_time_within(t, next - s->value[q]));
-        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
-        a.side = hdi_pythag(a.side, a.side_of[q]);
+    memset(b, 0, sizeof *b);
+    b->weight = weight;
+    b->inner_of = inner;
+    b->side_of = side;
+    b->first = first;
+    b->depth = hdi_bound_times(t, of->low);
+    b->root = exp(-b->depth / 2);
+    b->noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    b->most = !a->power;
+    for (q = first; q < s->count; q++) {
+        const double x = s->value[q], over = hdi_max(0, x - of->low), off = of->off[q];
+        const double w = !a->power ? exp(-hdi_bound_times(t, over)) : x > 0 ? pow(x, -a->power) : 0;
+        if (a->power) {
+            const double by = (a->power == 1 ? 1 : 1 / x + 1 / low) / low / x;
+            inner[q] = side[q] = x > 0 ? hdi_bound_times(by, off) : HUGE_VAL;
+        } else {
+            inner[q] = hdi_bound_times(off, hdi_time_within(t, over));
+            side[q] = hdi_bound_times(w * off, hdi_time_within(t, next - x));
+        }
+        weight[q] = a->distance && !a->power ? w * w : w;
+        b->most = hdi_max(b->most, w);
+        b->inner = hdi_pythag(b->inner, inner[q]);
+        b->side = hdi_pythag(b->side, side[q]);
     }
-    a.depth = hdi_bound_times(t, of->low);
-    a.root = exp(-a.depth / 2);
-    a.cut = exp(-hdi_bound_times(t, gap));
-    a.noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
-    a.most = 1;
-    return a;
-}
-
-/* The same of 1/lambda^power, for values that are not of constants. */
-static hdi_bank hdi_bank_inverse(const hdi_modes *of, int power, double *weight) {
-    const hd_spectrum *s = &of->s;
-    const int32_t first = hdi_low32(s->n_constant, s->count);
-    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
-    hdi_bank a = hdi_bank_at(of, 0, weight);
-    int32_t q;
-    a.first = first;
-    a.cut = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
-    for (q = first, a.inner = a.most = 0; q < s->count; q++) {
-        const double x = s->value[q], inverse = x > 0 ? 1 / x : 0;
-        const double by = inverse == 0 ? HUGE_VAL : (power == 1 ? 1 : 1 / x + 1 / low) / low / x;
-        weight[q] = power == 1 ? inverse : inverse * inverse;
-        a.inner_of[q] = a.side_of[q] = inverse == 0 ? by : hdi_bound_times(by, of->off[q]);
-        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
-        a.most = hdi_max(a.most, weight[q]);
-    }
-    a.mixed = a.square = a.side = a.inner;
-    return a;
+    b->cut = !a->power ? exp(-hdi_bound_times(t, gap)) : s->next > 0 ? pow(s->next, -a->power) : HUGE_VAL;
+    b->mixed = a->power ? b->inner : hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
+    b->square = a->power ? b->inner : b->mixed * b->mixed;
+    b->twice = a->power ? 0 : hdi_bound_times(b->mixed, hdi_bound_times(of->off_norm, t));
 }
 
 /* B^-1 e_v, or with mass e_v. */
@@ -16748,15 +16735,6 @@ static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
     hdi_spec_sum_errors(a);
 }
 
-/* Takes up a time. d^2 is made of squares of the weights for d. */
-static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
-    int32_t q;
-    a->bank = a->power ? hdi_bank_inverse(a->of, a->power, a->bank.weight)
-                       : hdi_bank_at(a->of, t, a->bank.weight);
-    for (q = a->bank.first; q < a->of->s.count && a->distance && !a->power; q++)
-        a->bank.weight[q] *= a->bank.weight[q];
-}
-
 /* Vertices without mass in K_t. Without a time, other components and vertices without a row are out of
  * reach. */
 static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
@@ -16778,37 +16756,14 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
 
 /* A call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. Column q n_times + m is for
  * source q and time m. */
-typedef enum hdi_spec_sort { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_sort;
-
 typedef struct hdi_spec_ask {
-    hdi_spec_sort sort;
-    int kind;
+    int distance, diagonal, kind;
     int32_t n_times;
     const double *t;
     const hd_sources *sources;   /* not for the diagonal */
     double *out, *bound;         /* columns ld apart; bound or NULL */
     size_t ld;
 } hdi_spec_ask;
-
-/* terms: of the sources. */
-static void hdi_spec_sums_run(hdi_spec_sums *x, const hdi_spec_ask *a, const hdi_terms *terms,
-                              hd_context *ctx) {
-    hdi_terms from;
-    int32_t q, m;
-    memset(&from, 0, sizeof from);
-    for (q = 0; q < (x->diagonal ? 1 : a->sources->count); q++) {
-        if (!x->diagonal) from = terms[q];
-        for (m = 0; m < a->n_times; m++) {
-            const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
-            x->column = a->out + at;
-            x->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_sum_at(x, a->t[m]);
-            hdi_spec_sum_from(x, &from);
-            hdi_parallel_ranges(ctx, x->of->s.n, 1024, hdi_spec_sum_task, x);
-            hdi_spec_sum_others(x, &from);
-        }
-    }
-}
 
 /* Pairs of the caller's, whose residuals are known. off [count] */
 static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
@@ -16826,9 +16781,22 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
     return x;
 }
 
-static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s, int timeless, hd_error *e) {
-    const int32_t k = a->sort == HDI_SPEC_DIAGONAL ? 1 : a->sources->count;
+/* Checks and completes a call. */
+static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd_spectrum *s, hd_error *e) {
+    static const double zero = 0;
+    const hdi_distance_row *row = a->distance ? hdi_distance_of((hd_distance_kind)a->kind) : NULL;
+    const int32_t k = a->diagonal ? 1 : a->sources->count;
     int32_t q;
+    memset(x, 0, sizeof *x);
+    x->distance = a->distance;
+    x->diagonal = a->diagonal;
+    x->power = row ? row->power : 0;
+    x->mass = row ? row->mass > 0 : a->kind == HD_KERNEL_OPERATOR;
+    if (x->power && a->n_times <= 1) {
+        a->n_times = 1;
+        a->t = &zero;
+    }
+    if (a->ld == 0) a->ld = (size_t)s->n;
     if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
     hdi_refuse(a->n_times < 1, "spectrum: there is no time", e);
     hdi_refuse(k < 0, "spectrum: a number of columns is negative", e);
@@ -16836,41 +16804,42 @@ static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s
     for (q = 0; q < a->n_times; q++)
         hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
                          a->t[q], e);
-    hdi_refuse(timeless && a->n_times > 1, "spectrum: this distance has no time", e);
+    hdi_refuse(x->power && a->n_times > 1, "spectrum: this distance has no time", e);
+    hdi_refuse(a->distance && !row, "spectrum: unknown distance", e);
+    hdi_refuse(!a->distance && !x->mass && a->kind != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
     return e->status;
 }
 
 static hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
-    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
-    const double zero = 0;
-    hdi_terms *terms = NULL;
+    hdi_terms none, *terms = NULL;
     hdi_spec_sums x;
     hdi_scope scope;
     hdi_modes of;
     hdi_call c;
+    int32_t q, m;
     if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (!s || !(a.sort == HDI_SPEC_DIAGONAL || a.sources)) return hdi_missing(c.e);
-    memset(&x, 0, sizeof x);
-    x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
-    x.distance = a.sort == HDI_SPEC_DISTANCE;
-    x.power = x.distance && row ? row->power : 0;
-    x.mass = x.distance ? row && row->mass > 0 : a.kind == HD_KERNEL_OPERATOR;
-    if (x.power && a.n_times <= 1) a.t = &zero;
-    if (x.power) a.n_times = hdi_high32(a.n_times, 1);
-    if (a.ld == 0) a.ld = (size_t)s->n;
-    if (hdi_spec_sums_check(&a, s, x.power, c.e) < 0) return c.e->status;
-    if (x.distance ? !row : !x.mass && a.kind != HD_KERNEL_SYMMETRIC)
-        return hdi_fail(c.e, HD_ERR_ARGUMENT,
-                        x.distance ? "spectrum: unknown distance" : "spectrum: unknown kernel");
+    if (!s || !(a.diagonal || a.sources)) return hdi_missing(c.e);
+    if (hdi_spec_sums_check(&a, &x, s, c.e) < 0) return c.e->status;
     scope = hdi_scope_begin(c.ctx, c.e);
+    memset(&none, 0, sizeof none);
     x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
-    if (!x.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, x.distance, &scope);
-    if (c.e->status >= 0) {
-        x.bank.weight = x.x + s->count;
-        of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
-        x.of = &of;
-        hdi_spec_sums_run(&x, &a, terms, c.ctx);
+    if (!a.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, a.distance, &scope);
+    if (c.e->status < 0) return hdi_scope_end(&scope);
+    x.bank.weight = x.x + s->count;
+    of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
+    x.of = &of;
+    for (q = 0; q < (a.diagonal ? 1 : a.sources->count); q++) {
+        const hdi_terms *from = a.diagonal ? &none : terms + q;
+        for (m = 0; m < a.n_times; m++) {
+            const size_t at = ((size_t)q * (size_t)a.n_times + (size_t)m) * a.ld;
+            x.column = a.out + at;
+            x.off = a.bound ? a.bound + at : NULL;
+            hdi_spec_sum_at(&x, a.t[m]);
+            hdi_spec_sum_from(&x, from);
+            hdi_parallel_ranges(c.ctx, s->n, 1024, hdi_spec_sum_task, &x);
+            hdi_spec_sum_others(&x, from);
+        }
     }
     return hdi_scope_end(&scope);
 }
@@ -24412,21 +24381,21 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_COLUMNS, (int)kernel, n_times, t, sources, U, bound, ldu};
+    const hdi_spec_ask ask = {0, 0, (int)kernel, n_times, t, sources, U, bound, ldu};
     return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_DIAGONAL, (int)kernel, n_times, t, NULL, D, bound, ldd};
+    const hdi_spec_ask ask = {0, 1, (int)kernel, n_times, t, NULL, D, bound, ldd};
     return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_DISTANCE, (int)kind, n_times, t, sources, D, bound, ldd};
+    const hdi_spec_ask ask = {1, 0, (int)kind, n_times, t, sources, D, bound, ldd};
     return hdi_spec_sums_ask(s, ask, err);
 }
 
