@@ -15777,24 +15777,23 @@ static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
  * it, they are taken out of the vectors. */
 #define HDI_SPEC_STRICT 0.3
 #define HDI_SPEC_POLISH 0.5
-/* Below this part of a squared norm a difference of products has too few digits. */
-#define HDI_SPEC_WEAK 1e-6
-/* A column of which less than this part is left has lost a digit of orthogonality. */
-#define HDI_SPEC_SHRUNK 0.1
+/* A column of whose squared norm less than this part is left has lost a digit of orthogonality. */
+#define HDI_SPEC_SHRUNK 0.01
 
 /* G = R' R for the Gram matrix G of a block. A column that nearly depends on those before it is only cleaned
- * of them, and takes no part in the others: the next pass sees it as it is. scale [8]: what columns have been
- * divided by so far, against norm [8]. Columns that are rounding become zero, and *drop the largest norm of
- * them; drop NULL: none. Returns how far G is from the identity. */
-static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm,
-                                double *drop) {
+ * of them, and takes no part in the others: the next pass sees it as it is. Columns that are rounding become
+ * zero, and *drop the largest norm of them; drop NULL: none. They are total[9 q] times as long as they look,
+ * and were norm [8]. removed [8]: squares of what was just taken out of them. Returns how far G is from the
+ * identity, HUGE_VAL if a column has lost a digit. */
+static double hdi_spec_cholesky(const double *G, double *R, const double *total, const double *norm,
+                                const double *removed, double *drop) {
     int weak[HDI_WIDE] = {0};
     double off = 0;
     int q, k, p;
     memset(R, 0, HDI_WIDE * HDI_WIDE * sizeof *R);
     for (q = 0; q < HDI_WIDE; q++) {
-        const double size = G[9 * q] > 0 ? sqrt(G[9 * q]) : 0;
-        double sum = G[9 * q];
+        const double square = hdi_max(G[9 * q], 0), size = sqrt(square), least = HDI_SPEC_SHRUNK * square;
+        double sum = square;
         for (k = 0; k < q; k++) {
             double v = G[8 * k + q];
             if (R[9 * k] == 0 || weak[k]) continue;
@@ -15804,34 +15803,29 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
             sum -= R[8 * k + q] * R[8 * k + q];
         }
         if (size == 0) continue;
-        if (drop && !(scale[q] * size > HDI_SPEC_RANK * norm[q])) {
-            *drop = hdi_max(*drop, scale[q] * size);
+        if (drop && !(total[9 * q] * size > HDI_SPEC_RANK * norm[q])) {
+            *drop = hdi_max(*drop, total[9 * q] * size);
             continue;
         }
-        weak[q] = !(sum > HDI_SPEC_WEAK * G[9 * q]);
+        weak[q] = !(sum > least);
         R[9 * q] = weak[q] ? size : sqrt(sum);
-        off = weak[q] ? HUGE_VAL : hdi_max(off, fabs(G[9 * q] - 1));
-        scale[q] *= R[9 * q];
+        off = weak[q] || removed[q] > least ? HUGE_VAL : hdi_max(off, fabs(square - 1));
     }
     return off;
 }
 
-/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
-static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
-                                   const double *norm, double *drop, double *G, double *R) {
-    double *both[2], off;
+/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x, and total R total.
+ * The rest is as above. */
+static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *total,
+                                   const double *norm, const double *removed, double *drop) {
+    double G[64], R[64], *both[2], off;
     hdi_spec_pass p = {s->ops, both, NULL, R, s->n, 2, 0, 0};
+    int i, j, k;
     both[0] = x;
     both[1] = bx;
     hdi_spec_dots(s, &x, 1, bx, G);
-    off = hdi_spec_cholesky(G, R, scale, norm, drop);
+    off = hdi_spec_cholesky(G, R, total, norm, removed, drop);
     hdi_parallel_ranges(s->m->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
-    return off;
-}
-
-/* total = R total, both upper triangular */
-static void hdi_spec_compose(const double *R, double *total) {
-    int i, j, k;
     for (i = 0; i < HDI_WIDE; i++) {
         for (j = i; j < HDI_WIDE; j++) {
             double sum = 0;
@@ -15839,6 +15833,7 @@ static void hdi_spec_compose(const double *R, double *total) {
             total[8 * i + j] = sum;
         }
     }
+    return off;
 }
 
 /* w less its part in the last two blocks of the basis, from which alone it should have one. The coefficients
@@ -15860,28 +15855,21 @@ static void hdi_spec_local(hdi_spec *s, double *w) {
  * become much smaller by it. Returns how many columns are left. */
 static int32_t hdi_spec_append(hdi_spec *s) {
     double *w = s->list[s->n_near + s->n_blocks], *couple = s->couple + 64 * s->n_blocks;
-    double norm[HDI_WIDE], scale[HDI_WIDE], removed[HDI_WIDE], G[64], R[64], off = 1;
+    double norm[HDI_WIDE], removed[HDI_WIDE], off = HUGE_VAL;
     int32_t left = 0, pass, q;
-    int dirty = 1;
     memset(couple, 0, 64 * sizeof *couple);
-    for (q = 0; q < HDI_WIDE; q++) couple[9 * q] = scale[q] = 1;
     hdi_spec_mass(s, w, s->bw);
     hdi_wide_dots(w, s->bw, NULL, s->n, HDI_WIDE, norm);
-    for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
+    for (q = 0; q < HDI_WIDE; q++) {
+        couple[9 * q] = 1;
+        norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
+    }
     if (s->n_blocks > 0) hdi_spec_local(s, w);
-    for (pass = 0; pass < 2 || ((off > 0.1 || dirty) && pass < HDI_SPEC_PASSES); pass++) {
-        const int clean = dirty;
-        if (clean) {
-            hdi_spec_project(s, s->list, s->n_near + s->n_blocks, w, s->bw, removed);
-            hdi_spec_mass(s, w, s->bw);
-        }
-        off = hdi_spec_orthonormal(s, w, s->bw, scale, norm, pass > 0 ? &s->lost : NULL, G, R);
-        dirty = off == HUGE_VAL;
-        for (q = 0; q < HDI_WIDE; q++) {
-            dirty |= clean && R[9 * q] > 0 && sqrt(removed[q]) > HDI_SPEC_SHRUNK * R[9 * q];
-            dirty |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
-        }
-        hdi_spec_compose(R, couple);
+    for (pass = 0; pass < 2 || (off > 0.1 && pass < HDI_SPEC_PASSES); pass++) {
+        const int clean = off == HUGE_VAL;
+        hdi_spec_project(s, s->list, clean ? s->n_near + s->n_blocks : 0, w, s->bw, removed);
+        if (clean) hdi_spec_mass(s, w, s->bw);
+        off = hdi_spec_orthonormal(s, w, s->bw, couple, norm, removed, pass > 0 ? &s->lost : NULL);
     }
     for (q = 0; q < HDI_WIDE; q++) left += couple[9 * q] > 0;
     return left;
@@ -16079,15 +16067,14 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
  * enters its pairs, but for those of which much was in blocks before. A pair found twice, with another one
  * missing, would deceive the count of pivots: so columns that depend on each other are noted. */
 static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
-    double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
+    double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
     int64_t i;
     int32_t r;
     hdi_spec_mass(s, x, s->bw);
     hdi_spec_project(s, s->lock, at, x, s->bw, twin);
     for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > HDI_SPEC_TWIN ? 0 : x[i];
     hdi_spec_mass(s, x, s->bw);
-    for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
-    s->alike |= !(hdi_spec_orthonormal(s, x, s->bw, scale, scale, NULL, G, R) < 0.5);
+    s->alike |= !(hdi_spec_orthonormal(s, x, s->bw, zero, zero, zero, NULL) < 0.5);
     (void)hdi_spec_measure(s, value, x, s->basis, norm);
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
