@@ -15187,21 +15187,18 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
-    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k, *vertex = NULL;
-    double *weight = NULL;
+    int64_t at;
+    int32_t k, *vertex;
+    double *weight;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    if (!plain) {
-        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
-        vertex = HDI_TAKE(keep, int32_t, size);
-        weight = HDI_TAKE(keep, double, size);
-    }
+    at = hdi_source_first(s, s->count) * hdi_source_corners(s);
+    vertex = HDI_TAKE(keep, int32_t, at);
+    weight = HDI_TAKE(keep, double, at);
     for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
-        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        at = hdi_source_first(s, k) * hdi_source_corners(s);
+        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
@@ -15722,24 +15719,25 @@ static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, doubl
     hdi_parallel_ranges(s->m->ctx, s->n, 8 * (int64_t)HDI_SPEC_TILE, hdi_spec_add_task, &p);
 }
 
-/* w -= V V'(B w), with bw = B w, for any number of blocks v, as many at a time as h has room for. removed
- * [8], or NULL: squares of norms of what was taken out. */
-static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *bw,
-                             double *removed) {
+/* ---- operators on blocks ---- */
+
+/* bw = B w */
+static void hdi_spec_mass(const hdi_spec *s, const double *w) {
+    hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
+}
+
+/* w -= V V'(B w) and bw = B w, which is there before, too, for any number of blocks v. removed [8], or NULL:
+ * squares of norms of what was taken out. */
+static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *removed) {
     int32_t i, n, j;
     if (removed) memset(removed, 0, HDI_WIDE * sizeof *removed);
-    for (i = 0; i < n_v; i += n) {
+    for (i = 0; i < n_v; i += n) {               /* as many at a time as `part` has room for */
         n = hdi_low32(n_v - i, s->room + 1);
-        hdi_spec_dots(s, v + i, n, bw, s->h);
+        hdi_spec_dots(s, v + i, n, s->bw, s->h);
         hdi_spec_add(s, v + i, n, &w, 1, s->h);
         for (j = 0; removed && j < 64 * n; j++) removed[j % 8] += s->h[j] * s->h[j];
     }
-}
-
-/* ---- operators on blocks ---- */
-
-static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
-    hdi_mass_apply(s->lap, HDI_WIDE, x, y, s->m->ctx);
+    if (n_v > 0) hdi_spec_mass(s, w);
 }
 
 /* w = (L - sigma B)^-1 b */
@@ -15814,16 +15812,16 @@ static double hdi_spec_cholesky(const double *G, double *R, const double *total,
     return off;
 }
 
-/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x, and total R total.
+/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, bw = B x, and total R total.
  * The rest is as above. */
-static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *total,
-                                   const double *norm, const double *removed, double *drop) {
+static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *total, const double *norm,
+                                   const double *removed, double *drop) {
     double G[64], R[64], *both[2], off;
     hdi_spec_pass p = {s->ops, both, NULL, R, s->n, 2, 0, 0};
     int i, j, k;
     both[0] = x;
-    both[1] = bx;
-    hdi_spec_dots(s, &x, 1, bx, G);
+    both[1] = s->bw;
+    hdi_spec_dots(s, &x, 1, s->bw, G);
     off = hdi_spec_cholesky(G, R, total, norm, removed, drop);
     hdi_parallel_ranges(s->m->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
     for (i = 0; i < HDI_WIDE; i++) {
@@ -15843,10 +15841,9 @@ static void hdi_spec_local(hdi_spec *s, double *w) {
     const double *h = s->h + 64 * (last - first);
     double *own = s->own + 64 * last;
     int q, k;
-    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, s->bw, NULL);
+    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, NULL);
     for (q = 0; q < HDI_WIDE; q++)
         for (k = 0; k < HDI_WIDE; k++) own[8 * q + k] = 0.5 * (h[8 * q + k] + h[8 * k + q]);
-    hdi_spec_mass(s, w, s->bw);
 }
 
 /* The newest block of the basis, orthogonal to those before it and to the blocks nearby, with orthonormal
@@ -15858,7 +15855,7 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     double norm[HDI_WIDE], removed[HDI_WIDE], off = HUGE_VAL;
     int32_t left = 0, pass, q;
     memset(couple, 0, 64 * sizeof *couple);
-    hdi_spec_mass(s, w, s->bw);
+    hdi_spec_mass(s, w);
     hdi_wide_dots(w, s->bw, NULL, s->n, HDI_WIDE, norm);
     for (q = 0; q < HDI_WIDE; q++) {
         couple[9 * q] = 1;
@@ -15866,10 +15863,8 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     }
     if (s->n_blocks > 0) hdi_spec_local(s, w);
     for (pass = 0; pass < 2 || (off > 0.1 && pass < HDI_SPEC_PASSES); pass++) {
-        const int clean = off == HUGE_VAL;
-        hdi_spec_project(s, s->list, clean ? s->n_near + s->n_blocks : 0, w, s->bw, removed);
-        if (clean) hdi_spec_mass(s, w, s->bw);
-        off = hdi_spec_orthonormal(s, w, s->bw, couple, norm, removed, pass > 0 ? &s->lost : NULL);
+        hdi_spec_project(s, s->list, off == HUGE_VAL ? s->n_near + s->n_blocks : 0, w, removed);
+        off = hdi_spec_orthonormal(s, w, couple, norm, removed, pass > 0 ? &s->lost : NULL);
     }
     for (q = 0; q < HDI_WIDE; q++) left += couple[9 * q] > 0;
     return left;
@@ -16048,9 +16043,9 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
     worst = hdi_spec_measure(s, value, x, r, norm);
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++) {
         hdi_spec_inverse(s, r, w);
-        hdi_spec_mass(s, w, s->bw);
-        hdi_spec_project(s, s->list, s->n_near, w, s->bw, NULL);
-        hdi_spec_project(s, s->lock + first, s->n_lock - first, w, s->bw, NULL);
+        hdi_spec_mass(s, w);
+        hdi_spec_project(s, s->list, s->n_near, w, NULL);
+        hdi_spec_project(s, s->lock + first, s->n_lock - first, w, NULL);
         hdi_axpy(1, w, x, size);
         before = worst;
         worst = hdi_spec_measure(s, value, x, r, norm);
@@ -16070,11 +16065,10 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
     double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
     int64_t i;
     int32_t r;
-    hdi_spec_mass(s, x, s->bw);
-    hdi_spec_project(s, s->lock, at, x, s->bw, twin);
+    hdi_spec_mass(s, x);
+    hdi_spec_project(s, s->lock, at, x, twin);
     for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > HDI_SPEC_TWIN ? 0 : x[i];
-    hdi_spec_mass(s, x, s->bw);
-    s->alike |= !(hdi_spec_orthonormal(s, x, s->bw, zero, zero, zero, NULL) < 0.5);
+    s->alike |= !(hdi_spec_orthonormal(s, x, zero, zero, zero, NULL) < 0.5);
     (void)hdi_spec_measure(s, value, x, s->basis, norm);
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
