@@ -15171,12 +15171,11 @@ static int32_t hdi_terms_sum(const int32_t *v, hdi_pair *order, int32_t n, const
     for (q = 0; q < n; q++) {
         const int32_t at = (int32_t)order[q].key;
         if (part[order[q].id] == 0) continue;
-        if (m > 0 && vertex[m - 1] == at) {
-            weight[m - 1] += part[order[q].id];
-        } else {
+        if (m == 0 || vertex[m - 1] != at) {
             vertex[m] = at;
-            weight[m++] = part[order[q].id];
+            weight[m++] = 0;
         }
+        weight[m - 1] += part[order[q].id];
     }
     return m;
 }
@@ -15230,21 +15229,18 @@ static HDI_COLD hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
-    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k, *vertex = NULL;
-    double *weight = NULL;
+    int64_t at;
+    int32_t k, *vertex;
+    double *weight;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    if (!plain) {
-        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
-        vertex = HDI_TAKE(keep, int32_t, size);
-        weight = HDI_TAKE(keep, double, size);
-    }
+    at = hdi_source_first(s, s->count) * hdi_source_corners(s);
+    vertex = HDI_TAKE(keep, int32_t, at);
+    weight = HDI_TAKE(keep, double, at);
     for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
-        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        at = hdi_source_first(s, k) * hdi_source_corners(s);
+        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
@@ -15268,7 +15264,7 @@ static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const in
 /* L with one vertex of each component held at zero. All by rows in elimination order. */
 typedef struct hdi_ground {
     hdi_factor factor;
-    char *held;                  /* [n] */
+    char *held, *loose;          /* [n] [n_components] with a vertex that is held */
     double *diag, *mean, *form;  /* [n] of G; G b; of G B G less the means' part, when formed */
     /* [n_components] at least 1/lambda for the smallest eigenvalue that is not zero */
     double *trace;
@@ -15340,19 +15336,17 @@ static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const do
         const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
         const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
         double size = fabs(b[i]), rest = 0;
-        r[i] = b[i];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && !g->held[i]; p++) {
+        r[i] = g->held[i] ? 0 : b[i];
+        if (g->held[i]) continue;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
             r[i] -= v;
             size += fabs(v);
-            rest += lap->L.val[p];
+            rest += conserves ? 0 : lap->L.val[p];
         }
-        if (g->held[i]) r[i] = 0;
-        else if (!conserves) r[i] -= rest * x[i];
-        size += conserves ? 0 : fabs(rest * x[i]);
-        if (!g->held[i])
-            off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) *
-                sqrt(hdi_max(0, g->diag[i]));
+        r[i] -= rest * x[i];
+        size += fabs(rest * x[i]);
+        off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
     }
 }
 
@@ -15373,8 +15367,15 @@ static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const dou
 
 /* Doubles of a ground's arrays, which begin with diag. */
 static uint64_t hdi_ground_size(const hdi_elim *m) {
-    const uint64_t n = (uint64_t)m->sym.n;
-    return 3 * n + 2 * (uint64_t)m->lap->n_components + n / sizeof(double) + 1;
+    const uint64_t n = (uint64_t)m->sym.n, n_comp = (uint64_t)m->lap->n_components;
+    return 3 * n + 2 * n_comp + (n + n_comp) / sizeof(double) + 1;
+}
+
+/* Values of the pair grounded, factorised and inverted: sums of the inverses' diagonals by coef. */
+static hd_status hdi_ground_invert(hdi_elim *m, hdi_factor *f, const hdi_values *v, const double *coef,
+                                   double *out, hdi_scope *s) {
+    if (hdi_progress(m->ctx, "factor", 0, s->e) < 0 || hdi_factor_run(f, v, s->e) < 0) return s->e->status;
+    return hdi_elim_inverse_diagonal(m, f, coef, out, s);
 }
 
 /* Factor, diag(G) and the trace. */
@@ -15384,41 +15385,38 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const double one = 1;
     const size_t n = (size_t)lap->n_active, n_comp = (size_t)lap->n_components;
     double *val;
-    char *loose;
     hdi_values v;
     int32_t i;
     int64_t p;
     if (g->diag) return HD_OK;
-    val = HDI_TAKE(&s, double, lap->L.nnz);
-    loose = HDI_TAKE(&s, char, n_comp);
-    if (e->status >= 0) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
+    memset(&v, 0, sizeof v);
+    v.real = val = HDI_TAKE(&s, double, lap->L.nnz);
+    if (val) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
     if (g->diag && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         g->mean = g->diag + n;
         g->form = g->mean + n;
         g->trace = g->form + n;
         g->mean_off = g->trace + n_comp;
         g->held = (char *)(void *)(g->mean_off + n_comp);
+        g->loose = g->held + n;
         memset(g->trace, 0, n_comp * sizeof *g->trace);
-        hdi_ground_components(lap, loose);
+        hdi_ground_components(lap, g->loose);
         for (i = lap->n_active; i-- > 0;) {      /* the last of each component */
-            g->held[i] = loose[lap->component[i]];
-            if (g->held[i]) loose[lap->component[i]] = 0;
+            char *loose = g->loose + lap->component[i];
+            g->held[i] = *loose == 1;
+            if (*loose) *loose = 2;
         }
         hdi_ground_values(m, g, 0, val, NULL);
-        memset(&v, 0, sizeof v);
-        v.real = val;
-        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
-            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0) {
-            if (g->factor.all.negative) hdi_not_semidefinite(e);
-            for (i = 0; i < lap->n_active; i++) {
-                double size = lap->B ? 0 : lap->mass[i];
-                for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
-                if (g->held[i]) g->diag[i] = 0;
-                g->trace[lap->component[i]] += hdi_max(0, g->diag[i]) * size;
-            }
-            for (i = 0; i < lap->n_components; i++) g->largest_trace = hdi_max(g->largest_trace, g->trace[i]);
-            g->traced = 1;
+        if (hdi_ground_invert(m, &g->factor, &v, &one, g->diag, &s) >= 0 && g->factor.all.negative)
+            hdi_not_semidefinite(e);
+        for (i = 0; i < lap->n_active && e->status >= 0; i++) {
+            double size = lap->B ? 0 : lap->mass[i], *trace = g->trace + lap->component[i];
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
+            g->diag[i] = g->held[i] ? 0 : hdi_max(0, g->diag[i]);
+            *trace += g->diag[i] * size;
+            g->largest_trace = hdi_max(g->largest_trace, *trace);
         }
+        g->traced = 1;
     }
     if (e->status < 0) hdi_ground_free(g, m->ctx);
     return hdi_scope_end(&s);
@@ -15433,13 +15431,11 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const hd_laplacian *lap = m->lap;
     const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
     double *work, *b, coef[HDI_PACK] = {0};
-    char *loose;
     hdi_factor pack;
     hdi_values v;
     hd_c64 *val;
     int32_t i;
     if (g->formed) return HD_OK;
-    loose = HDI_TAKE(&s, char, lap->n_components);
     val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
     b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
@@ -15448,18 +15444,16 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
+        (void)hdi_ground_invert(m, &pack, &v, coef, g->form, &s);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
     for (i = 0; i < lap->n_active; i++) b[i] = g->held[i] ? 0 : lap->mass[i];
     hdi_ground_refined(m, g, b, NULL, g->mean, g->mean_off, b + lap->n_active, work);
-    hdi_ground_components(lap, loose);
     for (i = 0; i < lap->n_active; i++) {
-        if (!loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
-        g->form[i] = g->held[i] ? 0
-                     : hdi_max(0,
-                               g->form[i] - g->mean[i] * g->mean[i] / lap->component_mass[lap->component[i]]);
+        const double mass = lap->component_mass[lap->component[i]];
+        if (!g->loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
+        g->form[i] = g->held[i] ? 0 : hdi_max(0, g->form[i] - g->mean[i] * g->mean[i] / mass);
     }
     g->formed = 1;
     return hdi_scope_end(&s);
@@ -15482,7 +15476,7 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
         const double w = hdi_terms_weight(from, i);
         b[row] = g->held[row] ? 0 : w;
         ws += forms ? w * g->mean[row] : 0;
-        root += fabs(w) * sqrt(hdi_max(0, g->diag[row]));
+        root += fabs(w) * sqrt(g->diag[row]);
     }
     hdi_ground_refined(m, g, b, NULL, u, by, r, sweep);
     off = by[c];
@@ -15545,7 +15539,6 @@ static uint64_t hdi_ground_room(const hdi_elim *m) {
 enum {
     HDI_SPEC_TILE = 128,             /* rows that blocks go through together */
     HDI_SPEC_CHUNKS = 32,            /* parts of a sum over rows, whatever the number of threads */
-    HDI_SPEC_GROUP = 8,              /* blocks of vectors that are formed at a time */
     HDI_SPEC_MOST = 320,             /* columns of a basis */
     HDI_SPEC_SPARE = 112,            /* more than twice the pairs wanted, when these are few */
     HDI_SPEC_HALF = 64,              /* eigenvalues between the last one known and the next shift */
@@ -15559,10 +15552,6 @@ enum {
 
 /* Shifts are this part of the mean distance of eigenvalues, or more, away from those known. */
 #define HDI_SPEC_NARROW 0.02
-
-/* Pivots that are larger than this many times the matrix spoil solves. On meshes of 3K to 50K vertices they
- * are 10 to 500 times as large, whatever the shift is; a few shifts are unlucky. */
-#define HDI_SPEC_GROWTH 1e4
 
 /* A run is kept orthogonal to locked vectors whose values are less far from the shift than this many times
  * the part where values are missing. */
@@ -15611,50 +15600,48 @@ static void hdi_spec_reduce(double *A, double *d, double *e, double *z, int32_t 
 
 /* ---- what a computation holds ---- */
 
+/* An eigenpair. at: its vector, eight times the block and the column. */
+typedef struct hdi_spec_pair {
+    double value, residual;
+    int32_t at;
+} hdi_spec_pair;
+
 /* Vectors stand eight side by side in blocks [n][8], by rows in elimination order. Eigenvalues are those of
  * the plan's scaled pair. */
 typedef struct hdi_spec {
-    hd_context *ctx;
     hdi_elim *m;
     const hd_laplacian *lap;
     const hdi_kernels *ops;
     hd_spectrum *out;            /* its counts and proven are kept while all goes on, too */
-    int32_t count;               /* wanted: so many, and those below */
-    double below;
+    int32_t n, count;            /* rows; wanted: so many, and those below */
+    double below, tol;
     hdi_scope keep, runs;        /* what is there to the end, and what only runs need */
-    int32_t n;
     hdi_factor factor;
     double sigma, off;           /* shift of the factor; how far from sigma its count may be wrong */
-    int64_t negative;            /* its negative pivots */
+    int64_t negative;            /* its negative pivots; -1: there is no factor */
     double unit;                 /* about the smallest eigenvalue that is not zero */
-    double tol;
     double edge;                 /* all below are found */
-    double share;                /* how much of the work is done */
     int32_t idle;                /* shifts in a row with nothing new below them */
     double **lock;               /* [room_lock] blocks of vectors found, n_lock are there */
-    double *high;                /* [room_lock] the largest value in each */
     int32_t n_lock, room_lock;
-    double *value, *residual;    /* [found] ascending, and what belongs to each */
-    int32_t *at;                 /* [found] vectors: eight times the block, and the column */
+    hdi_spec_pair *pair;         /* [found] ascending */
     int32_t found;
-    /* The run under way. Block n_blocks of the basis is the newest one, which T does not have yet. */
-    double **list;               /* [n_near] blocks found that it is orthogonal to, then those of the basis */
-    double *basis;               /* [room + 1][n][8] */
-    int32_t n_near, n_blocks, room;
-    int32_t *live;               /* [8 room + 8] columns that are not zero: of T, of the newest */
-    int32_t cols, width;         /* columns of T, and of its last block */
-    int32_t n_group;             /* blocks of vectors that are formed at a time */
-    double lost;                 /* largest column of a block that was dropped */
-    double frontier;             /* the smallest Ritz value above the shift that has not converged */
-    int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
-    double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
-    double *A, *z;               /* [cols][cols] T, eigenvectors */
-    double *d, *off_ritz;        /* [cols] eigenvalues, residuals */
-    double *bw, *bx, *tmp;       /* [n][8] B times blocks, and another */
-    double *sweep, *h, *part, *work;
-    double *noise;               /* [n] weights of rounding in residuals; [n] work */
     int32_t alike;               /* vectors of a block depended on each other */
     uint64_t seed;
+    /* The run under way. Block n_blocks of the basis is the newest one, which T does not have yet. Columns
+     * with nothing new are zero there and in T. */
+    double **list;               /* [n_near] blocks found that it is orthogonal to, then those of the basis */
+    double *basis;               /* [room + 1][n][8]; after the run work */
+    int32_t n_near, n_blocks, room;
+    double lost;                 /* largest column of a block that was dropped */
+    int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
+    double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
+    double *h;                   /* T [8 n_blocks][8 n_blocks], or [room][room + 1][8][8] of blocks */
+    double *z, *d;               /* eigenvectors and eigenvalues of T */
+    double *ritz;                /* [8 n_blocks] eigenvalues to be taken, HUGE_VAL for the others */
+    double *bw;                  /* [n][8] B times a block */
+    double *sweep, *part, *work;
+    double *noise;               /* [n] weights of rounding in residuals */
 } hdi_spec;
 
 /* Frees what only runs need. */
@@ -15664,10 +15651,9 @@ static void hdi_spec_runs_free(hdi_spec *s) {
 }
 
 static void hdi_spec_free(hdi_spec *s) {
-    while (s->n_lock > 0) hdi_free(s->ctx, s->lock[--s->n_lock]);
+    while (s->n_lock > 0) hdi_free(s->m->ctx, s->lock[--s->n_lock]);
     hdi_spec_runs_free(s);
     (void)hdi_scope_end(&s->keep);
-    memset(s, 0, sizeof *s);
 }
 
 /* Parts of a sum over rows. */
@@ -15678,42 +15664,33 @@ static int32_t hdi_spec_chunks(int32_t n) {
 /* All arrays but the blocks that are found. n_sweep: doubles of a sweep. */
 static void hdi_spec_take(hdi_spec *s, int32_t rows, int32_t count, uint64_t n_sweep) {
     const int32_t most = hdi_low32(2 * hdi_low32(count, HDI_SPEC_MOST) + HDI_SPEC_SPARE, HDI_SPEC_MOST);
-    const uint64_t n = (uint64_t)rows, block = HDI_WIDE * n, square = (uint64_t)HDI_WIDE * HDI_WIDE;
+    const uint64_t n = (uint64_t)rows, square = (uint64_t)HDI_WIDE * HDI_WIDE;
     uint64_t blocks, cols;
     s->n = rows;
     s->room = hdi_low32((rows + HDI_WIDE - 1) / HDI_WIDE, most / HDI_WIDE);
-    s->n_group = hdi_low32(count / HDI_WIDE + 2, HDI_SPEC_GROUP);
     s->room_lock = rows / 4 + 64;
     blocks = (uint64_t)s->room + 1;
     cols = (uint64_t)HDI_WIDE * (uint64_t)s->room;
     s->lock = HDI_TAKE(&s->keep, double *, s->room_lock);
-    s->high = HDI_TAKE(&s->keep, double, s->room_lock);
-    s->value = HDI_TAKE(&s->keep, double, n);
-    s->residual = HDI_TAKE(&s->keep, double, n);
-    s->at = HDI_TAKE(&s->keep, int32_t, n);
+    s->pair = HDI_TAKE(&s->keep, hdi_spec_pair, n);
     s->list = HDI_TAKE(&s->runs, double *, (uint64_t)s->room_lock + blocks);
-    s->basis = HDI_TAKE(&s->runs, double, blocks * block);
-    s->live = HDI_TAKE(&s->runs, int32_t, blocks * HDI_WIDE);
+    s->basis = HDI_TAKE(&s->runs, double, blocks * HDI_WIDE * n);
     s->own = HDI_TAKE(&s->runs, double, blocks * square);
     s->couple = HDI_TAKE(&s->runs, double, blocks * square);
-    s->A = HDI_TAKE(&s->runs, double, cols * cols);
+    s->h = HDI_TAKE(&s->runs, double, (cols + HDI_WIDE) * cols);
     s->z = HDI_TAKE(&s->runs, double, cols * cols);
     s->d = HDI_TAKE(&s->runs, double, cols);
-    s->off_ritz = HDI_TAKE(&s->runs, double, cols);
+    s->ritz = HDI_TAKE(&s->runs, double, cols);
     s->work = HDI_TAKE(&s->runs, double, 3 * cols);
-    s->bw = HDI_TAKE(&s->runs, double, block);
-    s->tmp = HDI_TAKE(&s->runs, double, block);
-    s->bx = HDI_TAKE(&s->runs, double, block);
+    s->bw = HDI_TAKE(&s->runs, double, HDI_WIDE * n);
     s->sweep = HDI_TAKE(&s->runs, double, n_sweep);
-    s->h = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)s->n_group);
     s->part = HDI_TAKE(&s->runs, double, square * blocks * (uint64_t)hdi_spec_chunks(rows));
-    s->noise = HDI_TAKE(&s->runs, double, 2 * n);
+    s->noise = HDI_TAKE(&s->runs, double, n);
 }
 
 static hd_status hdi_spec_make(hdi_spec *s, hdi_elim *m, int32_t count, double below, double tol,
                                hd_spectrum *out, hd_error *e) {
     memset(s, 0, sizeof *s);
-    s->ctx = m->ctx;
     s->m = m;
     s->lap = m->lap;
     s->out = out;
@@ -15773,7 +15750,7 @@ static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, doub
     const int64_t size = 64 * (int64_t)n_v;
     hdi_spec_pass p = {s->ops, v, &w, s->part, s->n, n_v, 1, hdi_spec_chunks(s->n)};
     int64_t i, c;
-    hdi_parallel(s->ctx, p.n_chunks, hdi_spec_dots_task, &p);
+    hdi_parallel(s->m->ctx, p.n_chunks, hdi_spec_dots_task, &p);
     for (i = 0; i < size; i++) h[i] = -s->part[i];
     for (c = 1; c < p.n_chunks; c++) for (i = 0; i < size; i++) h[i] -= s->part[c * size + i];
 }
@@ -15781,34 +15758,35 @@ static void hdi_spec_dots(const hdi_spec *s, double *const *v, int32_t n_v, doub
 static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, double *const *w, int32_t n_w,
                          double *h) {
     hdi_spec_pass p = {s->ops, v, w, h, s->n, n_v, n_w, 0};
-    hdi_parallel_ranges(s->ctx, s->n, 8 * (int64_t)HDI_SPEC_TILE, hdi_spec_add_task, &p);
-}
-
-/* w -= V V'(B w), with bw = B w, for any number of blocks v, as many at a time as h has room for. removed
- * [8], or NULL: squares of norms of what was taken out. */
-static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *bw,
-                             double *removed) {
-    int32_t i, n, j;
-    if (removed) memset(removed, 0, HDI_WIDE * sizeof *removed);
-    for (i = 0; i < n_v; i += n) {
-        n = hdi_low32(n_v - i, s->room + 1);
-        hdi_spec_dots(s, v + i, n, bw, s->h);
-        hdi_spec_add(s, v + i, n, &w, 1, s->h);
-        for (j = 0; removed && j < 64 * n; j++) removed[j % 8] += s->h[j] * s->h[j];
-    }
+    hdi_parallel_ranges(s->m->ctx, s->n, 8 * (int64_t)HDI_SPEC_TILE, hdi_spec_add_task, &p);
 }
 
 /* ---- operators on blocks ---- */
 
-static void hdi_spec_mass(const hdi_spec *s, const double *x, double *y) {
-    hdi_mass_apply(s->lap, HDI_WIDE, x, y, s->ctx);
+/* bw = B w */
+static void hdi_spec_mass(const hdi_spec *s, const double *w) {
+    hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
+}
+
+/* w -= V V'(B w) and bw = B w, which is there before, too, for any number of blocks v. removed [8], or NULL:
+ * squares of norms of what was taken out. */
+static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *removed) {
+    int32_t i, n, j;
+    if (removed) memset(removed, 0, HDI_WIDE * sizeof *removed);
+    for (i = 0; i < n_v; i += n) {               /* as many at a time as `part` has room for */
+        n = hdi_low32(n_v - i, s->room + 1);
+        hdi_spec_dots(s, v + i, n, s->bw, s->h);
+        hdi_spec_add(s, v + i, n, &w, 1, s->h);
+        for (j = 0; removed && j < 64 * n; j++) removed[j % 8] += s->h[j] * s->h[j];
+    }
+    if (n_v > 0) hdi_spec_mass(s, w);
 }
 
 /* w = (L - sigma B)^-1 b */
 static void hdi_spec_inverse(hdi_spec *s, const double *b, double *w) {
     hdi_sweep z = hdi_sweep_open(&s->factor, HDI_WIDE, w, s->sweep);
     memcpy(w, b, 8 * (size_t)s->n * sizeof *w);
-    hdi_sweep_run(&z, s->ctx);
+    hdi_sweep_run(&z, s->m->ctx);
     s->out->n_solves += HDI_WIDE;
 }
 
@@ -15839,24 +15817,23 @@ static void hdi_spec_scale_task(void *arg, int64_t begin, int64_t end) {
  * it, they are taken out of the vectors. */
 #define HDI_SPEC_STRICT 0.3
 #define HDI_SPEC_POLISH 0.5
-/* Below this part of a squared norm a difference of products has too few digits. */
-#define HDI_SPEC_WEAK 1e-6
-/* A column of which less than this part is left has lost a digit of orthogonality. */
-#define HDI_SPEC_SHRUNK 0.1
+/* A column of whose squared norm less than this part is left has lost a digit of orthogonality. */
+#define HDI_SPEC_SHRUNK 0.01
 
 /* G = R' R for the Gram matrix G of a block. A column that nearly depends on those before it is only cleaned
- * of them, and takes no part in the others: the next pass sees it as it is. scale [8]: what columns have been
- * divided by so far, against norm [8]. Columns that are rounding become zero, and *drop the largest norm of
- * them; drop NULL: none. Returns how far G is from the identity. */
-static double hdi_spec_cholesky(const double *G, double *R, double *scale, const double *norm,
-                                double *drop) {
+ * of them, and takes no part in the others: the next pass sees it as it is. Columns that are rounding become
+ * zero, and *drop the largest norm of them; drop NULL: none. They are total[9 q] times as long as they look,
+ * and were norm [8]. removed [8]: squares of what was just taken out of them. Returns how far G is from the
+ * identity, HUGE_VAL if a column has lost a digit. */
+static double hdi_spec_cholesky(const double *G, double *R, const double *total, const double *norm,
+                                const double *removed, double *drop) {
     int weak[HDI_WIDE] = {0};
     double off = 0;
     int q, k, p;
     memset(R, 0, HDI_WIDE * HDI_WIDE * sizeof *R);
     for (q = 0; q < HDI_WIDE; q++) {
-        const double size = G[9 * q] > 0 ? sqrt(G[9 * q]) : 0;
-        double sum = G[9 * q];
+        const double square = hdi_max(G[9 * q], 0), size = sqrt(square), least = HDI_SPEC_SHRUNK * square;
+        double sum = square;
         for (k = 0; k < q; k++) {
             double v = G[8 * k + q];
             if (R[9 * k] == 0 || weak[k]) continue;
@@ -15866,34 +15843,29 @@ static double hdi_spec_cholesky(const double *G, double *R, double *scale, const
             sum -= R[8 * k + q] * R[8 * k + q];
         }
         if (size == 0) continue;
-        if (drop && !(scale[q] * size > HDI_SPEC_RANK * norm[q])) {
-            *drop = hdi_max(*drop, scale[q] * size);
+        if (drop && !(total[9 * q] * size > HDI_SPEC_RANK * norm[q])) {
+            *drop = hdi_max(*drop, total[9 * q] * size);
             continue;
         }
-        weak[q] = !(sum > HDI_SPEC_WEAK * G[9 * q]);
+        weak[q] = !(sum > least);
         R[9 * q] = weak[q] ? size : sqrt(sum);
-        off = weak[q] ? HUGE_VAL : hdi_max(off, fabs(G[9 * q] - 1));
-        scale[q] *= R[9 * q];
+        off = weak[q] || removed[q] > least ? HUGE_VAL : hdi_max(off, fabs(square - 1));
     }
     return off;
 }
 
-/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, with bx = B x. */
-static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *bx, double *scale,
-                                   const double *norm, double *drop, double *G, double *R) {
-    double *both[2], off;
+/* Makes the columns of x orthonormal in B by their Gram matrix G = R' R, bw = B x, and total R total.
+ * The rest is as above. */
+static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *total, const double *norm,
+                                   const double *removed, double *drop) {
+    double G[64], R[64], *both[2], off;
     hdi_spec_pass p = {s->ops, both, NULL, R, s->n, 2, 0, 0};
-    both[0] = x;
-    both[1] = bx;
-    hdi_spec_dots(s, &x, 1, bx, G);
-    off = hdi_spec_cholesky(G, R, scale, norm, drop);
-    hdi_parallel_ranges(s->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
-    return off;
-}
-
-/* total = R total, both upper triangular */
-static void hdi_spec_compose(const double *R, double *total) {
     int i, j, k;
+    both[0] = x;
+    both[1] = s->bw;
+    hdi_spec_dots(s, &x, 1, s->bw, G);
+    off = hdi_spec_cholesky(G, R, total, norm, removed, drop);
+    hdi_parallel_ranges(s->m->ctx, s->n, HDI_ROWS_PER_TASK, hdi_spec_scale_task, &p);
     for (i = 0; i < HDI_WIDE; i++) {
         for (j = i; j < HDI_WIDE; j++) {
             double sum = 0;
@@ -15901,6 +15873,7 @@ static void hdi_spec_compose(const double *R, double *total) {
             total[8 * i + j] = sum;
         }
     }
+    return off;
 }
 
 /* w less its part in the last two blocks of the basis, from which alone it should have one. The coefficients
@@ -15910,10 +15883,9 @@ static void hdi_spec_local(hdi_spec *s, double *w) {
     const double *h = s->h + 64 * (last - first);
     double *own = s->own + 64 * last;
     int q, k;
-    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, s->bw, NULL);
+    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, NULL);
     for (q = 0; q < HDI_WIDE; q++)
         for (k = 0; k < HDI_WIDE; k++) own[8 * q + k] = 0.5 * (h[8 * q + k] + h[8 * k + q]);
-    hdi_spec_mass(s, w, s->bw);
 }
 
 /* The newest block of the basis, orthogonal to those before it and to the blocks nearby, with orthonormal
@@ -15922,31 +15894,21 @@ static void hdi_spec_local(hdi_spec *s, double *w) {
  * become much smaller by it. Returns how many columns are left. */
 static int32_t hdi_spec_append(hdi_spec *s) {
     double *w = s->list[s->n_near + s->n_blocks], *couple = s->couple + 64 * s->n_blocks;
-    double norm[HDI_WIDE], scale[HDI_WIDE], removed[HDI_WIDE], G[64], R[64], off = 1;
+    double norm[HDI_WIDE], removed[HDI_WIDE], off = HUGE_VAL;
     int32_t left = 0, pass, q;
-    int dirty = 1;
     memset(couple, 0, 64 * sizeof *couple);
-    for (q = 0; q < HDI_WIDE; q++) couple[9 * q] = scale[q] = 1;
-    hdi_spec_mass(s, w, s->bw);
+    hdi_spec_mass(s, w);
     hdi_wide_dots(w, s->bw, NULL, s->n, HDI_WIDE, norm);
-    for (q = 0; q < HDI_WIDE; q++) norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
-    if (s->n_blocks > 0) hdi_spec_local(s, w);
-    for (pass = 0; pass < 2 || ((off > 0.1 || dirty) && pass < HDI_SPEC_PASSES); pass++) {
-        const int clean = dirty;
-        if (clean) {
-            hdi_spec_project(s, s->list, s->n_near + s->n_blocks, w, s->bw, removed);
-            hdi_spec_mass(s, w, s->bw);
-        }
-        off = hdi_spec_orthonormal(s, w, s->bw, scale, norm, pass > 0 ? &s->lost : NULL, G, R);
-        dirty = off == HUGE_VAL;
-        for (q = 0; q < HDI_WIDE; q++) {
-            dirty |= clean && R[9 * q] > 0 && sqrt(removed[q]) > HDI_SPEC_SHRUNK * R[9 * q];
-            dirty |= R[9 * q] > 0 && R[9 * q] < HDI_SPEC_SHRUNK * sqrt(hdi_max(G[9 * q], 0));
-        }
-        hdi_spec_compose(R, couple);
+    for (q = 0; q < HDI_WIDE; q++) {
+        couple[9 * q] = 1;
+        norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
     }
-    for (q = 0; q < HDI_WIDE; q++)
-        if (couple[9 * q] > 0) s->live[s->cols + left++] = 8 * s->n_blocks + q;
+    if (s->n_blocks > 0) hdi_spec_local(s, w);
+    for (pass = 0; pass < 2 || (off > 0.1 && pass < HDI_SPEC_PASSES); pass++) {
+        hdi_spec_project(s, s->list, off == HUGE_VAL ? s->n_near + s->n_blocks : 0, w, removed);
+        off = hdi_spec_orthonormal(s, w, couple, norm, removed, pass > 0 ? &s->lost : NULL);
+    }
+    for (q = 0; q < HDI_WIDE; q++) left += couple[9 * q] > 0;
     return left;
 }
 
@@ -15961,126 +15923,100 @@ static double hdi_random(uint64_t *seed) {
     return (double)(int64_t)(x >> 11) * ldexp(1, -52) - 1;
 }
 
-static void hdi_spec_random(hdi_spec *s, double *w) {
-    const int64_t size = 8 * (int64_t)s->n;
-    int64_t i;
-    for (i = 0; i < size; i++) w[i] = hdi_random(&s->seed);
-}
-
-static double hdi_spec_lambda(const hdi_spec *s, int32_t i) { return s->sigma + 1 / s->d[i]; }
-
-static int hdi_spec_converged(const hdi_spec *s, int32_t i) {
-    return s->d[i] != 0 &&
-           s->off_ritz[i] <= HDI_SPEC_STRICT * s->tol * hdi_max(fabs(hdi_spec_lambda(s, i)), s->unit);
-}
-
-/* T, of which the lower triangle counts, into A. */
-static void hdi_spec_projected(const hdi_spec *s) {
-    int32_t i, j;
-    for (i = 0; i < s->cols; i++) {
-        for (j = 0; j <= i; j++) {
-            const int32_t row = s->live[i], col = s->live[j], apart = row / 8 - col / 8;
-            const double *part = apart == 0 ? s->own : s->couple;
-            s->A[(int64_t)i * s->cols + j] = apart > 1 ? 0 : part[8 * row + col % 8];
-        }
-    }
-}
-
 /* How much of column a of the newest block the solve with the Ritz vector would bring, whose rows of the last
  * block are y. */
 static double hdi_spec_beyond(const hdi_spec *s, int32_t a, const double *y) {
-    const int32_t *live = s->live + s->cols - s->width;
-    double sum = 0;
-    int32_t k;
-    for (k = 0; k < s->width; k++) sum += s->couple[8 * (8 * s->n_blocks + a) + live[k] % 8] * y[k];
-    return sum;
+    return hdi_dot(s->couple + 8 * (8 * (int64_t)s->n_blocks + a), y, HDI_WIDE);
 }
 
-/* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last block,
- * which tell the residuals. off_ritz becomes |L x - lambda B x| in the norm of B^-1 that the Ritz vector x
- * will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. stuck: pairs for which it is
- * too large, so that further steps are no use: then the eigenvalue next to the shift is locked, and is not in
- * the way of the next run. */
-static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
-    const int32_t m = s->cols, last = m - s->width, r = full ? m : s->width;
-    double largest = 0, *off = s->work + 2 * (int64_t)m;
+/* Which pairs of the projected matrix are taken: those that have converged, beyond the edge and below the
+ * first one above the shift that has not. What converges is |L x - lambda B x| in the norm of B^-1 that the
+ * Ritz vector x will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. stuck: pairs for
+ * which it is too large, so that further steps are no use: then the eigenvalue next to the shift is locked,
+ * and is not in the way of the next run. y: the last r rows of the eigenvectors, from the last block's on. */
+static void hdi_spec_take_pairs(hdi_spec *s, const double *y, int32_t r) {
+    const int32_t m = 8 * s->n_blocks;
+    double largest = 0, frontier = HUGE_VAL;
     int32_t i, a;
-    hdi_spec_projected(s);
-    memset(s->z, 0, (size_t)m * (size_t)r * sizeof *s->z);
-    for (i = 0; i < r; i++) s->z[(int64_t)(i + (full ? 0 : last)) * r + i] = 1;
-    hdi_spec_reduce(s->A, s->d, off, s->z, m, r, s->work);
-    if (!hdi_tridiag_eigen(s->d, off, s->z, m, r)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
-    s->frontier = HUGE_VAL;
-    for (i = s->stuck = 0; i < m; i++) {
-        const double *y = s->z + (int64_t)i * r + r - s->width, d2 = s->d[i] * s->d[i];
-        double sum = 0;
-        int reached;
-        for (a = 0; a < HDI_WIDE; a++) {
-            const double c = hdi_spec_beyond(s, a, y);
-            sum += c * c;
-        }
-        s->off_ritz[i] = d2 > 0 ? sqrt(sum) / d2 : HUGE_VAL;
-        reached = hdi_spec_converged(s, i);
-        if (d2 > 0) s->off_ritz[i] += ((double)HDI_WIDE * DBL_EPSILON * largest + s->lost) / d2;
-        s->stuck += reached && !hdi_spec_converged(s, i);
-        if (s->d[i] > 0 && !hdi_spec_converged(s, i))
-            s->frontier = hdi_min(s->frontier, hdi_spec_lambda(s, i));
+    largest *= HDI_WIDE * DBL_EPSILON;
+    for (i = s->stuck = 0; i < m; i++, y += r) {
+        const double d = s->d[i];
+        double x, most, off = 0;
+        s->ritz[i] = HUGE_VAL;
+        if (!(fabs(d) > largest)) continue;      /* zero, but for rounding */
+        x = s->sigma + 1 / d;
+        most = HDI_SPEC_STRICT * s->tol * hdi_max(fabs(x), s->unit) * d * d;
+        for (a = 0; a < HDI_WIDE; a++) off = hdi_pythag(off, hdi_spec_beyond(s, a, y));
+        if (off + largest + s->lost <= most) s->ritz[i] = x;
+        else if (d > 0) frontier = hdi_min(frontier, x);
+        s->stuck += off <= most && !(off + largest + s->lost <= most);
     }
-    return HD_OK;
+    for (i = 0; i < m; i++)
+        if (!(s->ritz[i] > s->edge && s->ritz[i] < frontier)) s->ritz[i] = HUGE_VAL;
 }
 
-/* Is a pair taken? Those below the frontier are. */
-static int hdi_spec_taken(const hdi_spec *s, int32_t i) {
-    const double x = s->d[i] != 0 ? hdi_spec_lambda(s, i) : HUGE_VAL;
-    return hdi_spec_converged(s, i) && x > s->edge && x < s->frontier;
+/* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last
+ * block, which tell the residuals. */
+static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
+    const int32_t m = 8 * s->n_blocks, r = full ? m : (int32_t)HDI_WIDE;
+    double *off = s->work + 2 * (int64_t)m;
+    int32_t i, j;
+    memset(s->h, 0, (size_t)m * (size_t)m * sizeof *s->h);
+    for (i = 0; i < m; i++)                      /* the lower triangle of T */
+        for (j = hdi_high32(i / 8 * 8 - 8, 0); j <= i; j++)
+            s->h[(int64_t)i * m + j] = (i / 8 == j / 8 ? s->own : s->couple)[8 * i + j % 8];
+    memset(s->z, 0, (size_t)m * (size_t)r * sizeof *s->z);
+    for (i = 0; i < r; i++) s->z[(int64_t)(m - r + i) * r + i] = 1;
+    hdi_spec_reduce(s->h, s->d, off, s->z, m, r, s->work);
+    if (!hdi_tridiag_eigen(s->d, off, s->z, m, r)) return hdi_lanczos_failed(e);
+    hdi_spec_take_pairs(s, s->z + r - HDI_WIDE, r);
+    return HD_OK;
 }
 
 /* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
  * those of the basis. */
 static void hdi_spec_nearby(hdi_spec *s) {
     int32_t i;
-    s->n_near = 0;
-    for (i = 0; i < s->n_lock; i++)
-        if (s->high[i] > s->edge || s->sigma - s->high[i] < HDI_SPEC_NEARBY * (s->sigma - s->edge))
-            s->list[s->n_near++] = s->lock[i];
+    memset(s->list, 0, (size_t)s->n_lock * sizeof *s->list);
+    for (i = 0; i < s->found; i++) {
+        const double x = s->pair[i].value;
+        const int32_t b = s->pair[i].at / 8;
+        if (x > s->edge || s->sigma - x < HDI_SPEC_NEARBY * (s->sigma - s->edge)) s->list[b] = s->lock[b];
+    }
+    for (i = s->n_near = 0; i < s->n_lock; i++)
+        if (s->list[i]) s->list[s->n_near++] = s->list[i];
     for (i = 0; i <= s->room; i++) s->list[s->n_near + i] = s->basis + 8 * (int64_t)i * s->n;
 }
 
-/* Would `missing` pairs below the shift and `beyond` above it be taken? */
-static int hdi_spec_enough(const hdi_spec *s, int32_t missing, int32_t beyond) {
+/* Are `wanted` pairs to be taken on the side where the edge is? */
+static int hdi_spec_enough(const hdi_spec *s, int32_t wanted) {
+    const int above = s->sigma <= s->edge;
     int32_t i;
-    for (i = 0; i < s->cols; i++) {
-        const int taken = hdi_spec_taken(s, i);
-        missing -= taken && s->d[i] < 0;
-        beyond -= taken && s->d[i] > 0;
-    }
-    return missing <= 0 && beyond <= 0;
+    for (i = 0; i < 8 * s->n_blocks; i++) wanted -= s->ritz[i] < HUGE_VAL && (above || s->ritz[i] < s->sigma);
+    return wanted <= 0;
 }
 
-/* Blocks until all `missing` eigenvalues between the edge and the shift are there, and `beyond` above it, or
- * until the basis is full. */
-static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, hd_error *e) {
-    int32_t look = missing + beyond + 4 * HDI_WIDE;
+/* Blocks until all `wanted` eigenvalues between the edge and the shift are there, at the edge itself so many
+ * above it, or until the basis is full. */
+static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
+    const double share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
+    int32_t look = wanted / HDI_WIDE + 4, more;
+    int64_t i;
     hdi_spec_nearby(s);
-    s->n_blocks = s->cols = 0;
+    s->n_blocks = 0;
     s->lost = 0;
-    hdi_spec_random(s, s->basis);
-    s->width = hdi_spec_append(s);
     s->out->n_runs++;
-    while (s->width > 0) {                       /* else nothing is left of the space */
-        int32_t more;
+    for (i = 0; i < 8 * (int64_t)s->n; i++) s->basis[i] = hdi_random(&s->seed);
+    more = hdi_spec_append(s);
+    while (more > 0 && s->n_blocks < s->room) {  /* else nothing is left of the space, or no room */
         hdi_spec_inverse(s, s->bw, s->list[s->n_near + ++s->n_blocks]);
-        s->cols += s->width;
         more = hdi_spec_append(s);
-        if (hdi_progress(s->ctx, "solve", s->share, e) < 0) return e->status;
-        if (s->cols >= look || s->n_blocks == s->room || more == 0) {
-            if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
-            if (s->n_blocks == s->room || more == 0 || s->stuck) return HD_OK;
-            if (hdi_spec_enough(s, missing, beyond)) return HD_OK;
-            look = s->cols + (int32_t)HDI_SPEC_STEPS * HDI_WIDE;
-        }
-        s->width = more;
+        if (hdi_progress(s->m->ctx, "solve", share, e) < 0) return e->status;
+        if (s->n_blocks < look) continue;
+        if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
+        if (s->stuck || hdi_spec_enough(s, wanted)) return HD_OK;
+        look = s->n_blocks + HDI_SPEC_STEPS;
     }
     return HD_OK;
 }
@@ -16089,103 +16025,96 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t missing, int32_t beyond, 
 
 /* Blocks for n more vectors. */
 static hd_status hdi_spec_blocks(hdi_spec *s, int32_t n, hd_error *e) {
-    for (; n > 0; n -= HDI_WIDE) {
-        double *x = (double *)hdi_alloc_zero(s->ctx, HDI_WIDE * (uint64_t)s->n, sizeof *x, e);
-        if (!x) break;
-        s->high[s->n_lock] = -HUGE_VAL;
-        s->lock[s->n_lock++] = x;
+    for (; n > 0 && e->status >= 0; n -= HDI_WIDE) {
+        double *x = (double *)hdi_alloc_zero(s->m->ctx, HDI_WIDE * (uint64_t)s->n, sizeof *x, e);
+        if (x) s->lock[s->n_lock++] = x;
     }
     return e->status;
 }
 
 /* Enters a pair whose vector is at a place. */
 static void hdi_spec_enter(hdi_spec *s, double value, double residual, int32_t at) {
+    const hdi_spec_pair new_pair = {value, residual, at};
     int32_t i = s->found++;
-    for (; i > 0 && s->value[i - 1] > value; i--) {
-        s->value[i] = s->value[i - 1];
-        s->residual[i] = s->residual[i - 1];
-        s->at[i] = s->at[i - 1];
-    }
-    s->value[i] = value;
-    s->residual[i] = residual;
-    s->at[i] = at;
-    s->high[at / 8] = hdi_max(s->high[at / 8], value);
+    for (; i > 0 && s->pair[i - 1].value > value; i--) s->pair[i] = s->pair[i - 1];
+    s->pair[i] = new_pair;
 }
 
 /* Adds the Ritz vectors which[0..n) to blocks x. The newest block of the basis comes in by one more solve
  * that is not made: (L - sigma B)^-1 B x / theta has the residual of x without its fast modes. */
 static void hdi_spec_form(const hdi_spec *s, const int32_t *which, int32_t n, double *const *x) {
-    const int32_t m = s->cols, newest = 8 * s->n_blocks, n_w = (n + 7) / 8;
+    const int32_t m = 8 * s->n_blocks, n_w = (n + 7) / 8;
     int32_t q, i, a;
-    memset(s->h, 0, 8 * (size_t)(newest + 8) * (size_t)n_w * sizeof *s->h);
+    memset(s->h, 0, 8 * (size_t)(m + 8) * (size_t)n_w * sizeof *s->h);
     for (q = 0; q < n; q++) {
-        double *h = s->h + 8 * (int64_t)(newest + 8) * (q / 8) + q % 8;
+        double *h = s->h + 8 * (int64_t)(m + 8) * (q / 8) + q % 8;
         const double *y = s->z + (int64_t)which[q] * m;
-        for (i = 0; i < m; i++) h[8 * s->live[i]] = -y[i];
-        for (a = 0; a < HDI_WIDE; a++)
-            h[8 * (newest + a)] = -hdi_spec_beyond(s, a, y + m - s->width) / s->d[which[q]];
+        for (i = 0; i < m; i++) h[8 * i] = -y[i];
+        for (a = 0; a < HDI_WIDE; a++) h[8 * (m + a)] = -hdi_spec_beyond(s, a, y + m - 8) / s->d[which[q]];
     }
     hdi_spec_add(s, s->list + s->n_near, s->n_blocks + 1, x, n_w, s->h);
 }
 
-/* Residuals -(L - value B) x of the block x for eigenvalues of eight Ritz vectors, into tmp, and their norms.
+/* Residuals r = -(L - value B) x of the block x for eigenvalues of eight Ritz vectors, and their norms.
  * Returns the largest, relative to its value. */
-static double hdi_spec_measure(hdi_spec *s, const double *value, const double *x, double *norm) {
+static double hdi_spec_measure(const hdi_spec *s, const double *value, const double *x, double *r,
+                               double *norm) {
     hdi_residual g = hdi_residual_open(s->lap, 1, x, 1, NULL);
     double worst = 0;
-    int r;
+    int q;
     g.real = 1;
-    g.r = s->tmp;
-    for (r = 0; r < HDI_WIDE; r++) g.re[r] = -value[r];
-    hdi_residual_run(&g, s->ctx);
-    hdi_wide_dots(s->tmp, s->tmp, s->m->weight, s->n, HDI_WIDE, norm);
-    for (r = 0; r < HDI_WIDE; r++) {
-        norm[r] = sqrt(norm[r]);
-        worst = hdi_max(worst, norm[r] / hdi_max(fabs(value[r]), s->unit));
+    g.r = r;
+    for (q = 0; q < HDI_WIDE; q++) g.re[q] = -value[q];
+    hdi_residual_run(&g, s->m->ctx);
+    hdi_wide_dots(r, r, s->m->weight, s->n, HDI_WIDE, norm);
+    for (q = 0; q < HDI_WIDE; q++) {
+        norm[q] = sqrt(norm[q]);
+        worst = hdi_max(worst, norm[q] / hdi_max(fabs(value[q]), s->unit));
     }
     return worst;
 }
 
-/* Steps of inverse iteration while residuals are too large, for the eigenvalues of block x, of which n
- * columns are there: w = (L - sigma B)^-1 r is added. It has no part in the blocks nearby, nor in those
- * from `first` on: a step enlarges the rounding of a residual in the direction of the vectors next to the
- * shift. Steps that worsen the block are undone. The basis is not needed any more. */
-static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, double *x, int32_t n) {
-    double norm[HDI_WIDE], *w = s->basis, worst = hdi_spec_measure(s, value, x, norm), now;
+/* Steps of inverse iteration while residuals r are too large, for the eigenvalues of block x: w = (L - sigma
+ * B)^-1 r is added. It has no part in the blocks nearby, nor in those from `first` on: a step enlarges the
+ * rounding of a residual in the direction of the vectors next to the shift. A step that worsens the block is
+ * undone. */
+static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, double *x) {
+    const int64_t size = 8 * (int64_t)s->n;
+    double norm[HDI_WIDE], *w = s->basis, *r = w + size, before, worst;
     int32_t tries;
-    int64_t i;
-    for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++, worst = now) {
-        hdi_spec_inverse(s, s->tmp, w);
-        hdi_spec_mass(s, w, s->bw);
-        hdi_spec_project(s, s->list, s->n_near, w, s->bw, NULL);
-        hdi_spec_project(s, s->lock + first, s->n_lock - first, w, s->bw, NULL);
-        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] += i % 8 < n ? w[i] : 0;
-        now = hdi_spec_measure(s, value, x, norm);
-        if (now <= worst) continue;
-        for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] -= i % 8 < n ? w[i] : 0;
+    worst = hdi_spec_measure(s, value, x, r, norm);
+    for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++) {
+        hdi_spec_inverse(s, r, w);
+        hdi_spec_mass(s, w);
+        hdi_spec_project(s, s->list, s->n_near, w, NULL);
+        hdi_spec_project(s, s->lock + first, s->n_lock - first, w, NULL);
+        hdi_axpy(1, w, x, size);
+        before = worst;
+        worst = hdi_spec_measure(s, value, x, r, norm);
+        if (worst <= before) continue;
+        hdi_axpy(-1, w, x, size);
         return;
     }
 }
 
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
+#define HDI_SPEC_TWIN 0.1        /* a vector of which a larger part was found before is not new */
 
 /* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to all before it, and
  * enters its pairs, but for those of which much was in blocks before. A pair found twice, with another one
  * missing, would deceive the count of pivots: so columns that depend on each other are noted. */
 static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
-    double G[64], R[64], scale[HDI_WIDE], norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
+    double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
     int64_t i;
     int32_t r;
-    hdi_spec_mass(s, x, s->bx);
-    hdi_spec_project(s, s->lock, at, x, s->bx, twin);
-    for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > 0.1 ? 0 : x[i];
-    hdi_spec_mass(s, x, s->bx);
-    for (r = 0; r < HDI_WIDE; r++) scale[r] = 1;
-    s->alike |= !(hdi_spec_orthonormal(s, x, s->bx, scale, scale, NULL, G, R) < 0.5);
-    (void)hdi_spec_measure(s, value, x, norm);
+    hdi_spec_mass(s, x);
+    hdi_spec_project(s, s->lock, at, x, twin);
+    for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > HDI_SPEC_TWIN ? 0 : x[i];
+    s->alike |= !(hdi_spec_orthonormal(s, x, zero, zero, zero, NULL) < 0.5);
+    (void)hdi_spec_measure(s, value, x, s->basis, norm);
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
     for (r = 0; r < n; r++) {
-        if (twin[r] > 0.1 || s->found == s->n) continue;   /* found before */
+        if (twin[r] > HDI_SPEC_TWIN || s->found == s->n) continue;
         s->out->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
                      norm[r] > HDI_SPEC_LOST * fabs(value[r]);
         hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
@@ -16196,37 +16125,35 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
  * leave fast modes in the vectors. They are taken out where they are seen. Then all become orthogonal to the
  * blocks before them: those far away, against which the run did not work, are so up to residuals. */
 static hd_status hdi_spec_lock(hdi_spec *s, hd_error *e) {
-    const int32_t first = s->n_lock, most = 8 * s->n_group;
-    double value[(int)HDI_SPEC_MOST + (int)HDI_WIDE] = {0};
+    const int32_t first = s->n_lock;
+    double value[HDI_WIDE];
     int32_t which[HDI_SPEC_MOST], n = 0, i, j;
     if (s->n_blocks == 0) return HD_OK;
     if (hdi_spec_ritz(s, 1, e) < 0) return e->status;
-    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->noise + s->n);
-    for (i = 0; i < s->cols; i++) {
-        if (!hdi_spec_taken(s, i)) continue;
-        for (j = n++; j > 0 && value[j - 1] > hdi_spec_lambda(s, i); j--) {
-            which[j] = which[j - 1];
-            value[j] = value[j - 1];
-        }
+    hdi_noise_weights(s->lap, 1, 2 * fabs(s->sigma), s->noise, s->bw);
+    for (i = 0; i < 8 * s->n_blocks; i++) {
+        if (!(s->ritz[i] < HUGE_VAL)) continue;
+        for (j = n++; j > 0 && s->ritz[which[j - 1]] > s->ritz[i]; j--) which[j] = which[j - 1];
         which[j] = i;
-        value[j] = hdi_spec_lambda(s, i);
     }
     n = hdi_low32(n, 8 * (s->room_lock - first));
-    if (hdi_spec_blocks(s, n, e) < 0) return e->status;
-    for (i = 0; i < n; i += most)
-        hdi_spec_form(s, which + i, hdi_low32(n - i, most), s->lock + first + i / 8);
-    for (i = 0; i < n; i += 8)
-        hdi_spec_polish(s, value + i, first, s->lock[first + i / 8], hdi_low32(n - i, 8));
-    for (i = 0; i < n; i += 8) hdi_spec_settle(s, value + i, first + i / 8, hdi_low32(n - i, 8));
+    if (n == 0 || hdi_spec_blocks(s, n, e) < 0) return e->status;
+    hdi_spec_form(s, which, n, s->lock + first);
+    for (i = 0; i < n; i += 8) {
+        const int32_t at = first + i / 8, here = hdi_low32(n - i, 8);
+        for (j = 0; j < HDI_WIDE; j++) value[j] = j < here ? s->ritz[which[i + j]] : 0;
+        hdi_spec_polish(s, value, first, s->lock[at]);
+        hdi_spec_settle(s, value, at, here);
+    }
     return HD_OK;
 }
 
-/* Constants of the first `most` components whose rows of L sum to zero: eigenvalue 0, without any search. */
-static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
-    char *loose = (char *)s->tmp;                /* their room is not in use yet */
-    int32_t *at = s->at, i, k, n = 0;
+/* Constants of the first components whose rows of L sum to zero: eigenvalue 0, without any search. */
+static hd_status hdi_spec_constants(hdi_spec *s, hd_error *e) {
+    char *loose = (char *)s->bw;                 /* not in use yet, as the basis */
+    int32_t *at = (int32_t *)(void *)s->basis, i, k, n = 0;
     hdi_ground_components(s->lap, loose);
-    for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < most ? n++ : -1;
+    for (k = 0; k < s->lap->n_components; k++) at[k] = loose[k] && n < s->count ? n++ : -1;
     if (hdi_spec_blocks(s, n, e) < 0) return e->status;
     for (i = 0; i < s->n; i++) {
         const int32_t c = s->lap->component[i];
@@ -16245,7 +16172,7 @@ static hd_status hdi_spec_constants(hdi_spec *s, int32_t most, hd_error *e) {
  * than max_i sum_j |E_ij| / (b_ratio b_i). */
 static double hdi_spec_count_off(hdi_spec *s) {
     const hdi_symbolic *sym = &s->m->sym;
-    double *sum = s->bx, *terms = sum + s->n, worst = 0;
+    double *sum = s->bw, *terms = sum + s->n, worst = 0;
     int32_t f, j, i;
     int64_t p;
     memset(sum, 0, 2 * (size_t)s->n * sizeof *sum);
@@ -16274,20 +16201,24 @@ static double hdi_spec_count_off(hdi_spec *s) {
     return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
 }
 
-/* Factorises L - sigma B and counts. */
+/* Factorises L - sigma B and counts. A pivot of zero is no error. */
 static hd_status hdi_spec_shift(hdi_spec *s, double sigma, hd_error *e) {
     s->out->n_factors++;
     s->sigma = sigma;
-    if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) < 0) return e->status;
-    s->negative = s->factor.all.negative;
-    s->off = hdi_spec_count_off(s);
-    return HD_OK;
+    s->negative = -1;
+    s->off = HUGE_VAL;
+    if (hdi_elim_real(s->m, &s->factor, 1, -sigma, e) == HD_ERR_BREAKDOWN) hdi_error_clear(e);
+    else if (e->status >= 0) {
+        s->negative = s->factor.all.negative;
+        s->off = hdi_spec_count_off(s);
+    }
+    return e->status;
 }
 
 /* Pairs found with values below x. */
 static int32_t hdi_spec_rank(const hdi_spec *s, double x) {
     int32_t n = 0;
-    while (n < s->found && s->value[n] < x) n++;
+    while (n < s->found && s->pair[n].value < x) n++;
     return n;
 }
 
@@ -16297,19 +16228,22 @@ static int hdi_spec_sure(const hdi_spec *s) {
     const double root = hdi_ratio_root(s->lap);
     int32_t i;
     for (i = 0; i < s->found; i++)
-        if (fabs(s->value[i] - s->sigma) <= s->off + root * s->residual[i]) return 0;
+        if (fabs(s->pair[i].value - s->sigma) <= s->off + root * s->pair[i].residual) return 0;
     return s->off < HUGE_VAL && !s->alike;
 }
 
 /* ---- a row of shifts ---- */
+
+/* Values between the last one known and the next shift. */
+static int32_t hdi_spec_half(const hdi_spec *s) { return hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1); }
 
 /* Mean distance of the last values found, and not less than a part of the mean of all. */
 static double hdi_spec_spacing(const hdi_spec *s) {
     const int32_t f = s->found, q = hdi_low32(f - 1, HDI_SPEC_HALF / 2);
     double step = s->unit;
     if (f > s->out->n_constant) {
-        step = 0.2 * s->value[f - 1] / f;
-        if (q > 0) step = hdi_max(step, (s->value[f - 1] - s->value[f - 1 - q]) / q);
+        step = 0.2 * s->pair[f - 1].value / f;
+        if (q > 0) step = hdi_max(step, (s->pair[f - 1].value - s->pair[f - 1 - q].value) / q);
     }
     return step;
 }
@@ -16324,49 +16258,45 @@ static int32_t hdi_spec_wanted(const hdi_spec *s, int *all) {
 /* The next shift: in the middle of the widest gap above what is wanted if that much is found, else some way
  * up, and every time much farther where nothing was: parts of unlike scales may be 10^11 apart. failed:
  * proofs that did not succeed; each takes some more pairs. */
-static double hdi_spec_next(const hdi_spec *s, int32_t failed, int32_t half) {
+static double hdi_spec_next(const hdi_spec *s, int32_t failed) {
     int all;
     const int32_t n = hdi_spec_wanted(s, &all) + failed * HDI_SPEC_GAPS;
     const double least = s->below < HUGE_VAL ? hdi_max(s->below, s->edge) : s->edge;
     const double step = hdi_spec_spacing(s);
-    const double from = hdi_max(s->edge, s->found > 0 ? s->value[s->found - 1] : s->edge);
+    const double from = hdi_max(s->edge, s->found > 0 ? s->pair[s->found - 1].value : s->edge);
     double widest = HDI_SPEC_NARROW * step, at = HUGE_VAL;
     int32_t i;
     for (i = n; all && i < s->found && i < n + HDI_SPEC_GAPS; i++) {
-        const double low = hdi_max(i > 0 ? s->value[i - 1] : least, least);
-        if (!(s->value[i] - low > widest)) continue;
-        widest = s->value[i] - low;
+        const double low = hdi_max(i > 0 ? s->pair[i - 1].value : least, least);
+        if (!(s->pair[i].value - low > widest)) continue;
+        widest = s->pair[i].value - low;
         at = low + widest / 2;
     }
     if (at < HUGE_VAL) return at;
-    at = hdi_min(half, (double)s->count - s->found + 3);
+    at = hdi_min(hdi_spec_half(s), (double)s->count - s->found + 3);
     at = from + ldexp(step, s->idle * (s->idle + 1) / 2) * hdi_max(1, at);
     return at < s->below ? at : hdi_max(s->below, from + 0.3 * step);
 }
 
-/* A shift below which about as many values are missing as a run finds, or none. */
-static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, int32_t half, int64_t *missing, hd_error *e) {
+/* A shift below which about as many values are missing as a run finds, or none. What a run has left behind
+ * lies far below its shift, so that the next one goes there. */
+static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     const double step = hdi_spec_spacing(s), apart = HDI_SPEC_NARROW * step;
-    double at = hdi_spec_next(s, failed, half);
+    const int32_t low = hdi_spec_rank(s, s->edge), high = hdi_spec_rank(s, s->sigma);
+    const int32_t middle = low + (high - low) / 2, half = hdi_spec_half(s);
+    double at = s->negative <= high ? hdi_spec_next(s, failed)
+                : middle > low ? s->pair[middle].value : 0.5 * (s->edge + s->sigma);
     int32_t tries, i;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
-        double sigma = at;
+        double sigma = at, missing;
         for (i = 0; i < s->found; i++)           /* not next to a value found */
-            if (fabs(s->value[i] - sigma) < apart) sigma = s->value[i] + apart;
-        if (hdi_spec_shift(s, sigma, e) < 0) {
-            if (e->status != HD_ERR_BREAKDOWN || tries + 1 == HDI_SPEC_TRIES) return e->status;
-            hdi_error_clear(e);                  /* a pivot is zero */
-            at += 0.37 * step;
-            continue;
-        }
-        *missing = s->negative - hdi_spec_rank(s, s->sigma);
-        if (*missing < 0) at += 0.37 * step;     /* too near to a value: the count is wrong */
-        else if (*missing > 2 * half) {
-            const double from = s->found > 0 && *missing < 2 * (int64_t)half * HDI_SPEC_TRIES
-                ? hdi_max(s->edge, hdi_min(s->value[s->found - 1], 0.5 * (s->edge + at))) : s->edge;
-            at = from + (at - from) * hdi_max(0.05, half / (double)*missing);
-        } else if (s->factor.all.largest > HDI_SPEC_GROWTH * s->factor.largest_entry && *missing > 0) {
-            at += 0.11 * step;                   /* there may be better ones */
+            if (fabs(s->pair[i].value - sigma) < apart) sigma = s->pair[i].value + apart;
+        if (hdi_spec_shift(s, sigma, e) < 0) return e->status;
+        missing = (double)s->negative - hdi_spec_rank(s, sigma);
+        if (missing < 0) at += 0.37 * step;      /* too near to a value: the count is wrong */
+        else if (missing > 2 * half) {
+            const double known = hdi_spec_rank(s, sigma) - low;
+            at = s->edge + (sigma - s->edge) * hdi_max(0.05, (half + known) / (missing + known));
         } else break;
     }
     return HD_OK;
@@ -16374,9 +16304,9 @@ static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, int32_t half, int64_
 
 /* A bound from below of all eigenvalues but the first n. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
-    if (n < s->found) return hdi_max(0, s->value[n] - hdi_ratio_root(s->lap) * s->residual[n]);
+    if (n < s->found) return hdi_max(0, s->pair[n].value - hdi_ratio_root(s->lap) * s->pair[n].residual);
     if (n == s->n) return HUGE_VAL;
-    return s->out->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->value[n - 1] : 0;
+    return s->out->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->pair[n - 1].value : 0;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
@@ -16391,35 +16321,29 @@ static hd_status hdi_spec_start(hdi_spec *s, hd_error *e) {
     }
     s->unit = sum > 0 ? 1 / sum : 1;
     s->edge = -s->unit;
-    if (hdi_spec_constants(s, s->count, e) < 0 || hdi_spec_shift(s, -s->unit, e) < 0) return e->status;
+    if (hdi_spec_constants(s, e) < 0 || hdi_spec_shift(s, -s->unit, e) < 0) return e->status;
     if (s->negative && s->off < s->unit) return hdi_not_semidefinite(e);
     if (s->negative)
         return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: the entries of L differ by so much that rounding "
                         "hides the smallest eigenvalues");
     if (s->count <= s->out->n_constant || s->found == s->n) return HD_OK;
-    return hdi_spec_lanczos(s, 0, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
+    return hdi_spec_lanczos(s, beyond, e) < 0 ? e->status : hdi_spec_lock(s, e);
 }
 
 /* All that is wanted; how many these are goes to out. */
 static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
-    int32_t half = hdi_low32(HDI_SPEC_HALF, 2 * s->room + 1), failed = 0, stalls = 0;
-    int64_t missing = 0;
-    int32_t *proven = &s->out->proven;
+    int32_t failed = 0, stalls = 0, *proven = &s->out->proven;
     int all = 0;
     if (hdi_spec_start(s, e) < 0) return e->status;
     *proven = s->found == s->n || s->count <= s->out->n_constant;
     while (!*proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
-        if (hdi_spec_move(s, failed, half, &missing, e) == HD_ERR_BREAKDOWN) {
-            hdi_error_clear(e);                  /* no shift up there can be told from zero */
-            break;
-        }
-        if (e->status < 0) return e->status;
+        int64_t missing;
+        if (hdi_spec_move(s, failed, e) < 0) return e->status;
+        missing = s->negative - hdi_spec_rank(s, s->sigma);
         if (missing > 0) {                       /* a run at the shift */
-            s->share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
-            if (hdi_spec_lanczos(s, (int32_t)missing, 0, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
+            if (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
             stalls = s->found > before ? 0 : stalls + 1;
-            half = stalls ? half / 2 + 1 : half;
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
         failed += missing < 0;
@@ -16442,10 +16366,12 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
 
 /* Vectors by vertices, the largest entry of each positive, and values in the units of the source. */
 static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
-    const double root = sqrt(s->m->scale), first = out->n_constant < s->found ? s->value[out->n_constant] : 0;
+    const double root = sqrt(s->m->scale);
+    const double first = out->n_constant < s->found ? s->pair[out->n_constant].value : 0;
     int32_t q, i;
     for (q = 0; q < out->count; q++) {
-        const double *from = s->lock[s->at[q] / 8] + s->at[q] % 8;
+        const hdi_spec_pair pair = s->pair[q];
+        const double *from = s->lock[pair.at / 8] + pair.at % 8;
         double *x = out->vector + (int64_t)q * out->n, most = 0, sign;
         memset(x, 0, (size_t)out->n * sizeof *x);
         for (i = 0; i < s->n; i++) x[s->lap->vertex[i]] = from[8 * (int64_t)i];
@@ -16453,8 +16379,8 @@ static void hdi_spec_vectors(const hdi_spec *s, hd_spectrum *out) {
             if (fabs(x[i]) > fabs(most)) most = x[i];
         sign = most < 0 ? -root : root;
         for (i = 0; i < out->n; i++) x[i] *= sign;
-        out->value[q] = s->m->scale * s->value[q];
-        out->residual[q] = hdi_quotient(s->residual[q], hdi_max(s->value[q], first));
+        out->value[q] = s->m->scale * pair.value;
+        out->residual[q] = hdi_quotient(pair.residual, hdi_max(pair.value, first));
         out->largest_residual = hdi_max(out->largest_residual, out->residual[q]);
     }
 }
@@ -16645,55 +16571,45 @@ static double hdi_decayed(const hdi_bank *b, double x) { return x * b->root * b-
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
 
-static hdi_bank hdi_bank_at(const hdi_modes *of, double t, double *weight) {
+/* Takes up a time, or without one the power. d^2 is made of squares of the weights for d. */
+static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
+    const hdi_modes *of = a->of;
     const hd_spectrum *s = &of->s;
+    const int32_t first = a->power ? hdi_low32(s->n_constant, s->count) : of->first;
+    const double low = first < s->count ? hdi_max(0, s->value[first]) : 0;
     const double next = s->next < HUGE_VAL ? hdi_max(0, s->next - of->off_norm) : HUGE_VAL;
     const double gap = hdi_max(0, next - of->low);
-    hdi_bank a;
+    hdi_bank *b = &a->bank;
+    double *weight = b->weight, *inner = weight + s->count, *side = inner + s->count;
     int32_t q;
-    memset(&a, 0, sizeof a);
-    a.weight = weight;
-    a.inner_of = weight + s->count;
-    a.side_of = a.inner_of + s->count;
-    a.first = of->first;
-    a.mixed = hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
-    a.square = a.mixed * a.mixed;
-    a.twice = hdi_bound_times(a.mixed, hdi_bound_times(of->off_norm, t));
-    for (q = a.first; q < s->count; q++) {
-        const double over = hdi_max(0, s->value[q] - of->low);
-        weight[q] = exp(-hdi_bound_times(t, over));
-        a.inner_of[q] = hdi_bound_times(of->off[q], hdi_time_within(t, over));
-        a.side_of[q] = hdi_bound_times(weight[q] * of->off[q], hdi_time_within(t, next - s->value[q]));
-        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
-        a.side = hdi_pythag(a.side, a.side_of[q]);
+    memset(b, 0, sizeof *b);
+    b->weight = weight;
+    b->inner_of = inner;
+    b->side_of = side;
+    b->first = first;
+    b->depth = hdi_bound_times(t, of->low);
+    b->root = exp(-b->depth / 2);
+    b->noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    b->most = !a->power;
+    for (q = first; q < s->count; q++) {
+        const double x = s->value[q], over = hdi_max(0, x - of->low), off = of->off[q];
+        const double w = !a->power ? exp(-hdi_bound_times(t, over)) : x > 0 ? pow(x, -a->power) : 0;
+        if (a->power) {
+            const double by = (a->power == 1 ? 1 : 1 / x + 1 / low) / low / x;
+            inner[q] = side[q] = x > 0 ? hdi_bound_times(by, off) : HUGE_VAL;
+        } else {
+            inner[q] = hdi_bound_times(off, hdi_time_within(t, over));
+            side[q] = hdi_bound_times(w * off, hdi_time_within(t, next - x));
+        }
+        weight[q] = a->distance && !a->power ? w * w : w;
+        b->most = hdi_max(b->most, w);
+        b->inner = hdi_pythag(b->inner, inner[q]);
+        b->side = hdi_pythag(b->side, side[q]);
     }
-    a.depth = hdi_bound_times(t, of->low);
-    a.root = exp(-a.depth / 2);
-    a.cut = exp(-hdi_bound_times(t, gap));
-    a.noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
-    a.most = 1;
-    return a;
-}
-
-/* The same of 1/lambda^power, for values that are not of constants. */
-static hdi_bank hdi_bank_inverse(const hdi_modes *of, int power, double *weight) {
-    const hd_spectrum *s = &of->s;
-    const int32_t first = hdi_low32(s->n_constant, s->count);
-    const double low = first < s->count ? s->value[first] : s->next, next = hdi_max(s->next, 0);
-    hdi_bank a = hdi_bank_at(of, 0, weight);
-    int32_t q;
-    a.first = first;
-    a.cut = next > 0 ? 1 / (power == 1 ? next : next * next) : HUGE_VAL;
-    for (q = first, a.inner = a.most = 0; q < s->count; q++) {
-        const double x = s->value[q], inverse = x > 0 ? 1 / x : 0;
-        const double by = inverse == 0 ? HUGE_VAL : (power == 1 ? 1 : 1 / x + 1 / low) / low / x;
-        weight[q] = power == 1 ? inverse : inverse * inverse;
-        a.inner_of[q] = a.side_of[q] = inverse == 0 ? by : hdi_bound_times(by, of->off[q]);
-        a.inner = hdi_pythag(a.inner, a.inner_of[q]);
-        a.most = hdi_max(a.most, weight[q]);
-    }
-    a.mixed = a.square = a.side = a.inner;
-    return a;
+    b->cut = !a->power ? exp(-hdi_bound_times(t, gap)) : s->next > 0 ? pow(s->next, -a->power) : HUGE_VAL;
+    b->mixed = a->power ? b->inner : hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
+    b->square = a->power ? b->inner : b->mixed * b->mixed;
+    b->twice = a->power ? 0 : hdi_bound_times(b->mixed, hdi_bound_times(of->off_norm, t));
 }
 
 /* B^-1 e_v, or with mass e_v. */
@@ -16842,15 +16758,6 @@ static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
     hdi_spec_sum_errors(a);
 }
 
-/* Takes up a time. d^2 is made of squares of the weights for d. */
-static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
-    int32_t q;
-    a->bank = a->power ? hdi_bank_inverse(a->of, a->power, a->bank.weight)
-                       : hdi_bank_at(a->of, t, a->bank.weight);
-    for (q = a->bank.first; q < a->of->s.count && a->distance && !a->power; q++)
-        a->bank.weight[q] *= a->bank.weight[q];
-}
-
 /* Vertices without mass in K_t. Without a time, other components and vertices without a row are out of
  * reach. */
 static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
@@ -16872,37 +16779,14 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
 
 /* A call for sums. kind: an hd_kernel or, for distances, an hd_distance_kind. Column q n_times + m is for
  * source q and time m. */
-typedef enum hdi_spec_sort { HDI_SPEC_COLUMNS, HDI_SPEC_DIAGONAL, HDI_SPEC_DISTANCE } hdi_spec_sort;
-
 typedef struct hdi_spec_ask {
-    hdi_spec_sort sort;
-    int kind;
+    int distance, diagonal, kind;
     int32_t n_times;
     const double *t;
     const hd_sources *sources;   /* not for the diagonal */
     double *out, *bound;         /* columns ld apart; bound or NULL */
     size_t ld;
 } hdi_spec_ask;
-
-/* terms: of the sources. */
-static void hdi_spec_sums_run(hdi_spec_sums *x, const hdi_spec_ask *a, const hdi_terms *terms,
-                              hd_context *ctx) {
-    hdi_terms from;
-    int32_t q, m;
-    memset(&from, 0, sizeof from);
-    for (q = 0; q < (x->diagonal ? 1 : a->sources->count); q++) {
-        if (!x->diagonal) from = terms[q];
-        for (m = 0; m < a->n_times; m++) {
-            const size_t at = ((size_t)q * (size_t)a->n_times + (size_t)m) * a->ld;
-            x->column = a->out + at;
-            x->off = a->bound ? a->bound + at : NULL;
-            hdi_spec_sum_at(x, a->t[m]);
-            hdi_spec_sum_from(x, &from);
-            hdi_parallel_ranges(ctx, x->of->s.n, 1024, hdi_spec_sum_task, x);
-            hdi_spec_sum_others(x, &from);
-        }
-    }
-}
 
 /* Pairs of the caller's, whose residuals are known. off [count] */
 static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
@@ -16920,9 +16804,22 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
     return x;
 }
 
-static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s, int timeless, hd_error *e) {
-    const int32_t k = a->sort == HDI_SPEC_DIAGONAL ? 1 : a->sources->count;
+/* Checks and completes a call. */
+static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd_spectrum *s, hd_error *e) {
+    static const double zero = 0;
+    const hdi_distance_row *row = a->distance ? hdi_distance_of((hd_distance_kind)a->kind) : NULL;
+    const int32_t k = a->diagonal ? 1 : a->sources->count;
     int32_t q;
+    memset(x, 0, sizeof *x);
+    x->distance = a->distance;
+    x->diagonal = a->diagonal;
+    x->power = row ? row->power : 0;
+    x->mass = row ? row->mass > 0 : a->kind == HD_KERNEL_OPERATOR;
+    if (x->power && a->n_times <= 1) {
+        a->n_times = 1;
+        a->t = &zero;
+    }
+    if (a->ld == 0) a->ld = (size_t)s->n;
     if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
     hdi_refuse(a->n_times < 1, "spectrum: there is no time", e);
     hdi_refuse(k < 0, "spectrum: a number of columns is negative", e);
@@ -16930,41 +16827,42 @@ static hd_status hdi_spec_sums_check(const hdi_spec_ask *a, const hd_spectrum *s
     for (q = 0; q < a->n_times; q++)
         hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
                          a->t[q], e);
-    hdi_refuse(timeless && a->n_times > 1, "spectrum: this distance has no time", e);
+    hdi_refuse(x->power && a->n_times > 1, "spectrum: this distance has no time", e);
+    hdi_refuse(a->distance && !row, "spectrum: unknown distance", e);
+    hdi_refuse(!a->distance && !x->mass && a->kind != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
     return e->status;
 }
 
 static HDI_COLD hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a, hd_error *err) {
-    const hdi_distance_row *row = hdi_distance_of((hd_distance_kind)a.kind);
-    const double zero = 0;
-    hdi_terms *terms = NULL;
+    hdi_terms none, *terms = NULL;
     hdi_spec_sums x;
     hdi_scope scope;
     hdi_modes of;
     hdi_call c;
+    int32_t q, m;
     if (hdi_enter(&c, s ? s->context : NULL, 1, err) < 0) return c.e->status;
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (!s || !(a.sort == HDI_SPEC_DIAGONAL || a.sources)) return hdi_missing(c.e);
-    memset(&x, 0, sizeof x);
-    x.diagonal = a.sort == HDI_SPEC_DIAGONAL;
-    x.distance = a.sort == HDI_SPEC_DISTANCE;
-    x.power = x.distance && row ? row->power : 0;
-    x.mass = x.distance ? row && row->mass > 0 : a.kind == HD_KERNEL_OPERATOR;
-    if (x.power && a.n_times <= 1) a.t = &zero;
-    if (x.power) a.n_times = hdi_high32(a.n_times, 1);
-    if (a.ld == 0) a.ld = (size_t)s->n;
-    if (hdi_spec_sums_check(&a, s, x.power, c.e) < 0) return c.e->status;
-    if (x.distance ? !row : !x.mass && a.kind != HD_KERNEL_SYMMETRIC)
-        return hdi_fail(c.e, HD_ERR_ARGUMENT,
-                        x.distance ? "spectrum: unknown distance" : "spectrum: unknown kernel");
+    if (!s || !(a.diagonal || a.sources)) return hdi_missing(c.e);
+    if (hdi_spec_sums_check(&a, &x, s, c.e) < 0) return c.e->status;
     scope = hdi_scope_begin(c.ctx, c.e);
+    memset(&none, 0, sizeof none);
     x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
-    if (!x.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, x.distance, &scope);
-    if (c.e->status >= 0) {
-        x.bank.weight = x.x + s->count;
-        of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
-        x.of = &of;
-        hdi_spec_sums_run(&x, &a, terms, c.ctx);
+    if (!a.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, a.distance, &scope);
+    if (c.e->status < 0) return hdi_scope_end(&scope);
+    x.bank.weight = x.x + s->count;
+    of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
+    x.of = &of;
+    for (q = 0; q < (a.diagonal ? 1 : a.sources->count); q++) {
+        const hdi_terms *from = a.diagonal ? &none : terms + q;
+        for (m = 0; m < a.n_times; m++) {
+            const size_t at = ((size_t)q * (size_t)a.n_times + (size_t)m) * a.ld;
+            x.column = a.out + at;
+            x.off = a.bound ? a.bound + at : NULL;
+            hdi_spec_sum_at(&x, a.t[m]);
+            hdi_spec_sum_from(&x, from);
+            hdi_parallel_ranges(c.ctx, s->n, 1024, hdi_spec_sum_task, &x);
+            hdi_spec_sum_others(&x, from);
+        }
     }
     return hdi_scope_end(&scope);
 }
@@ -24641,21 +24539,21 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
 HEATDIFF_API hd_status hd_spectrum_columns(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                            const double *t, const hd_sources *sources, double *U,
                                            double *bound, size_t ldu, hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_COLUMNS, (int)kernel, n_times, t, sources, U, bound, ldu};
+    const hdi_spec_ask ask = {0, 0, (int)kernel, n_times, t, sources, U, bound, ldu};
     return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_diagonal(const hd_spectrum *s, hd_kernel kernel, int32_t n_times,
                                             const double *t, double *D, double *bound, size_t ldd,
                                             hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_DIAGONAL, (int)kernel, n_times, t, NULL, D, bound, ldd};
+    const hdi_spec_ask ask = {0, 1, (int)kernel, n_times, t, NULL, D, bound, ldd};
     return hdi_spec_sums_ask(s, ask, err);
 }
 
 HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_kind kind, int32_t n_times,
                                             const double *t, const hd_sources *sources, double *D,
                                             double *bound, size_t ldd, hd_error *err) {
-    const hdi_spec_ask ask = {HDI_SPEC_DISTANCE, (int)kind, n_times, t, sources, D, bound, ldd};
+    const hdi_spec_ask ask = {1, 0, (int)kind, n_times, t, sources, D, bound, ldd};
     return hdi_spec_sums_ask(s, ask, err);
 }
 

@@ -1094,10 +1094,10 @@ static void int_spectrum_proof(void) {
     CHECK(int_elim(&m, lap, &ctx, &e) == HD_OK);
     CHECK(hdi_spec_make(&z, &m, 40, HUGE_VAL, 1e-10, &out, &e) >= 0 && hdi_spec_solve(&z, &e) >= 0);
     CHECK(out.proven && out.count == 40 && z.negative == hdi_spec_rank(&z, z.sigma) && hdi_spec_sure(&z));
-    for (i = 20; i + 1 < z.found; i++) z.value[i] = z.value[i + 1];
+    for (i = 20; i + 1 < z.found; i++) z.pair[i] = z.pair[i + 1];
     z.found--;
     CHECK(z.negative == hdi_spec_rank(&z, z.sigma) + 1);
-    z.value[7] = z.sigma * (1 + 1e-15);
+    z.pair[7].value = z.sigma * (1 + 1e-15);
     CHECK(!hdi_spec_sure(&z));
     hdi_spec_free(&z);
     hdi_elim_free(&m);

@@ -159,9 +159,9 @@ static void large_kept(void) {
     CHECK(dense_max_diff(again, moved, n) <= 1e-8 * dense_max_abs(moved, n) && dense_max_diff(again, d,
         n) > 0.01 * dense_max_abs(again, n));
     hd_heat_free(heat);
-    for (k = 0; k < 2; k++) {                    /* of the 9 MB that poles need; 2 MB are too little for either */
+    for (k = 0; k < 2; k++) {                    /* of the 9 MB that poles need; 1.5 MB are too little for either */
         CHECK(ctx.bytes_in_use == 0);
-        ctx.byte_limit = k ? 2000000 : 4000000;
+        ctx.byte_limit = k ? 1500000 : 4000000;
         CHECK(hd_heat_create(&heat, lap, &o, NULL) == HD_OK);
         i = heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, 1, &source, again, 0, &r);
         if (k) CHECK_MSG(i == HD_ERR_MEMORY_LIMIT && r.error.value > 4e6, "%d, %s: %s", (int)i, r.reason, r.error.text);
