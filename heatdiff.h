@@ -9657,21 +9657,15 @@ static void hdi_factor_take(hdi_factor *f, const hdi_factor *host, const hdi_sym
     f->ctx = s->ctx;
 }
 
-/* The same, to keep: the blocks leave the scope. */
-static hd_status hdi_factor_keep(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
-                                 int32_t width, hdi_scope *s) {
-    hdi_factor_take(f, host, sym, width, s);
-    f->n_blocks = s->n;
-    memcpy(f->block, s->block, sizeof f->block);
-    s->n = 0;
-    if (s->e->status < 0) hdi_factor_free(f);
-    return s->e->status;
-}
-
+/* The same, to keep. */
 static hd_status hdi_factor_make(hdi_factor *f, const hdi_factor *host, const hdi_symbolic *sym,
                                  int32_t width, hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    return hdi_factor_keep(f, host, sym, width, &s);
+    hdi_factor_take(f, host, sym, width, &s);
+    f->n_blocks = s.n;
+    memcpy(f->block, s.block, sizeof f->block);
+    if (e->status < 0) hdi_factor_free(f);
+    return e->status;
 }
 
 static uint64_t hdi_factor_bytes(const hdi_symbolic *sym, int32_t width) {
@@ -13336,8 +13330,6 @@ typedef struct hdi_elim {
     hdi_symbolic sym;
     hdi_factor *pack, real, shifted;     /* pack [HD_MAX_POLES/4] */
     int32_t n_packs, n_used;     /* packs that have room; packs of the set */
-    char *room, *rest;           /* of the caller's, for packs and inversion; what packs leave; NULL: none */
-    uint64_t left, rest_left;    /* bytes of both */
     int32_t filled;              /* 1: they hold set and t */
     int32_t lone;                /* pole in the real factor, -1 none */
     hd_rational set;
@@ -13461,7 +13453,6 @@ static int hdi_elim_holds(const hdi_elim *m, const hd_rational *set, double t) {
 /* Factors of all poles of a set at a time. */
 static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, hd_error *e) {
     const int there = hdi_elim_holds(m, set, t);
-    hdi_scope s = hdi_scope_begin(m->ctx, e);
     int32_t i, q;
     m->set = *set;                               /* weights cost nothing */
     if (there) return HD_OK;
@@ -13470,14 +13461,9 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     m->t = t;
     m->lone = hdi_set_lone(set) ? 0 : -1;
     m->n_used = hdi_set_packs(set);
-    s.room = m->n_packs == 0 ? m->room : NULL;
-    s.left = s.room ? m->left : 0;
     for (; m->n_packs < m->n_used; m->n_packs++)
-        if (hdi_factor_keep(m->pack + m->n_packs, m->pack, &m->sym, HDI_PACK, &s) < 0) return e->status;
-    if (s.room) {
-        m->rest = s.room;
-        m->rest_left = s.left;
-    }
+        if (hdi_factor_make(m->pack + m->n_packs, m->pack, &m->sym, HDI_PACK, m->ctx, e) < 0)
+            return e->status;
     if (m->lone >= 0 && hdi_elim_real(m, &m->real, t, set->theta[0].re, e) < 0) return e->status;
     for (i = 0; i < m->n_used; i++) {
         hd_c64 theta[4];
@@ -13979,8 +13965,6 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
-    s.room = m->rest;
-    s.left = m->rest_left;
     hdi_inverse_take(&z, &m->sym, width, &s);
     z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
     if (forms) {
@@ -14114,7 +14098,6 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
     hdi_factor f;
     hdi_inverse z;
     int32_t i;
-    kept.left = m->n_packs == 0 ? m->left : 0;
     for (i = m->n_packs; i < packs; i++)
         hdi_factor_take(&f, i > 0 ? m->pack : NULL, &m->sym, HDI_PACK, &kept);
     if (lone && !m->real.ctx) hdi_factor_take(&f, NULL, &m->sym, 1, &kept);
@@ -14123,7 +14106,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
         hdi_scope s = hdi_scope_counting();
         const int32_t width = i == 0 ? 1 : HDI_PACK;
         if (bound ? i : !(i == 0 ? lone : packs)) continue;
-        s.left = bound ? hdi_elim_room(m, packs) : m->n_packs > 0 ? m->rest_left : kept.left;
+        s.left = bound ? hdi_elim_room(m, packs) : 0;
         if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
         hdi_inverse_take(&z, &m->sym, width, &s);
         if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
@@ -21129,8 +21112,6 @@ typedef struct hdi_patches {
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     int32_t done;                /* pieces that are answered */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
-    char *room;                  /* for the factors of one patch after the other: fresh memory is dear */
-    uint64_t bytes;              /* of it */
 } hdi_patches;
 
 /* Orders the rows of a piece breadth-first from the first of them, without leaving the piece. */
@@ -21307,8 +21288,7 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
     }
     for (q = 0; q < ROWS; q++)
         for (i = 0, r[q] = 0; i < n && in->e->status >= 0; i++)
-            if (in->heat->elim.lap->vertex[i] < count)
-                r[q] = hdi_max(r[q], sqrt(sum[(int64_t)q * n + i]));
+            if (in->heat->elim.lap->vertex[i] < count) r[q] = hdi_max(r[q], sqrt(sum[(int64_t)q * n + i]));
     return hdi_scope_end(&s);
 }
 
@@ -21354,32 +21334,6 @@ static double hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t cor
     return hdi_bound_of(HDI_PATCH_SAFETY * x->t * x->t * hdi_patch_integral(r) / lap->b_ratio);
 }
 
-/* Room for factors of a patch, and if it is easily there for their inversion: that of patches before if it is
- * large enough. */
-static hd_status hdi_patch_room(hdi_patches *x, hdi_heat_call *in) {
-    hd_heat *own = in->heat;
-    hd_context *ctx = own->ctx;
-    hd_error *e = in->e;
-    hdi_scope need = hdi_scope_counting();
-    hdi_factor f;
-    hdi_inverse z;
-    if (hdi_heat_analysed(own, e) < 0) return e->status;
-    hdi_factor_take(&f, NULL, &own->elim.sym, HDI_PACK, &need);
-    if (x->bytes < need.bytes) {
-        hdi_free(ctx, x->room);
-        x->bytes = 0;
-        if ((double)need.bytes < hdi_bytes_left(ctx) / 4) {
-            hdi_inverse_take(&z, &own->elim.sym, HDI_PACK, &need);
-            need.bytes += need.bytes / 8;
-        }
-        x->room = HDI_NEW(ctx, char, need.bytes, e);
-        x->bytes = x->room ? need.bytes : 0;
-    }
-    own->elim.room = x->room;
-    own->elim.left = x->bytes;
-    return e->status;
-}
-
 /* Gives the core's values to the caller, D [n_times][n] and traces with bounds. first: of all pieces. */
 static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
                            const double *bound, int first) {
@@ -21417,7 +21371,7 @@ static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_
         in.core = core;
         in.method = HD_METHOD_DIRECT;
         in.diagonal = 1;
-        if (hdi_patch_room(x, &in) >= 0) in.left_out = hdi_patch_off(x, &in, core) / own->scale;
+        in.left_out = hdi_patch_off(x, &in, core) / own->scale;
         if (in.e->status >= 0) (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
@@ -21449,7 +21403,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
 }
 
 /* Room for pieces of all rows, or of those wanted. */
-static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
+static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active;
     int32_t q;
@@ -21460,7 +21414,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
     x->most = INT32_MAX;
     x->each = hdi_exacting(h->heat) ? HDI_PATCH_EXACT : HDI_PATCH_BYTES;
     x->reach = 1;
-    for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, h->ask.t[q]);
+    for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
     x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
     x->mark = HDI_TAKE_ZERO(&h->s, int32_t, n);
@@ -21475,18 +21429,9 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to) {
 static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
-    if (n < HDI_PATCH_FROM || hdi_patches_open(x, to) < 0) return 0;
-    x->t *= factor;
+    if (n < HDI_PATCH_FROM || hdi_patches_open(x, to, factor) < 0) return 0;
     return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
            hdi_patch_cut(x) < 0;
-}
-
-static void hdi_patches_free(hdi_patches *x) {
-    hd_heat *heat = x->to->task.h->heat;
-    hdi_local_free(heat);
-    hdi_free(heat->ctx, x->room);
-    x->room = NULL;
-    x->bytes = 0;
 }
 
 /* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
@@ -21499,7 +21444,7 @@ static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
         if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
         hdi_error_clear(h->e);
         x->most = hdi_low32(x->most, x->local->n);
-        hdi_patches_free(x);
+        hdi_local_free(h->heat);
         x->local = hdi_local_open(h->heat, h->e);
         if (h->e->status < 0) return h->e->status;
     }
@@ -21516,7 +21461,7 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
     h->relative = 1;
     h->rep->reason = reason;
     (void)hdi_patches_range(x, 0, x->n);
-    hdi_patches_free(x);
+    hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
     for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
         for (v = 0; v < lap->n; v++)
@@ -21538,7 +21483,7 @@ static HDI_INLINE int hdi_patches_can(const hd_heat *heat) {
 /* A query by patches, if they can serve: by method local, or as fits. */
 static hd_status hdi_diagonals_by_patches(const hdi_diagonals *to, const char *reason) {
     hdi_patches x;
-    if (hdi_patches_open(&x, to) >= 0) (void)hdi_patch_cut(&x);
+    if (hdi_patches_open(&x, to, 1) >= 0) (void)hdi_patch_cut(&x);
     return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x, reason);
 }
 
@@ -22849,38 +22794,32 @@ static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over,
 
 /* ---- estimates of queries ---- */
 
-/* Of each row of a patch, beside its factor. */
-#define HDI_PATCH_SECONDS 3e-6
-
 /* The same query by patches, each for all times. Do they cost less? */
 static int hdi_estimate_patches(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
     const hdi_distance_row *kind = x->query->distance;
-    const double tol = heat->opts.tol;
+    const double tol = heat->opts.tol, factor = kind ? kind->time : 1;
     hd_cost *c = x->to->cost + HD_METHOD_LOCAL;
     hdi_diagonals to;
     hdi_patches p;
     hd_rational set;
-    double pieces;
+    double pieces, work;
     int pays;
-    if (!hdi_patches_can(heat) || (kind && kind->time == 0)) return 0;
+    if (!hdi_patches_can(heat) || factor == 0) return 0;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);
-    pays = hdi_patches_pay(&p, &to, kind ? kind->time : 1);
-    if (!pays && hdi_patches_open(&p, &to) >= 0) {
-        p.t *= kind ? kind->time : 1;
-        (void)hdi_patch_cut(&p);
-    }
+    pays = hdi_patches_pay(&p, &to, factor);
+    if (!pays && hdi_patches_open(&p, &to, factor) >= 0) (void)hdi_patch_cut(&p);
     (void)hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set);
     heat->opts.tol = tol;
     if (h->e->status < 0) return 0;
-    hdi_patches_free(&p);
+    hdi_local_free(heat);
     pieces = ceil((double)p.n / p.core) * h->n_times;
-    hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set),
-                  pieces * HDI_PATCH_PROBES, 1, c);
-    c->seconds += HDI_PATCH_SECONDS * pieces * p.fill.n;
+    work = 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n;
+    hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
+    c->seconds += pieces * work / HDI_RATE_PACK;
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));

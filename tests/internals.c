@@ -1177,7 +1177,7 @@ static void int_patches(void) {
             to.ldd = (size_t)lap->n;
             to.Z = traces;
             to.bound = sure;
-            CHECK(hdi_patches_open(&x, &to) >= 0);
+            CHECK(hdi_patches_open(&x, &to, 1) >= 0);
             cut[4] = x.n;
             cut[2] = hdi_patch_halve(&x, 0, x.n, 4);
             cut[1] = hdi_patch_halve(&x, 0, cut[2], 2);
@@ -1217,7 +1217,7 @@ static void int_patches(void) {
             off = hdi_patch_off(&x, &in, cut[2] - cut[1]);
             CHECK_MSG(off > 1 / lap->component_mass[0], "%s: %g of %g", specs[k], off * lap->component_mass[0], reaches[r]);
             CHECK(hdi_heat_end(&in) >= 0);
-            hdi_patches_free(&x);
+            hdi_local_free(heat);
             (void)hdi_heat_end(&h);
         }
         CHECK_MSG(tightest < 2e4, "%s: bounds are %g times as large as errors", specs[k], tightest);
