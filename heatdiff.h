@@ -15354,13 +15354,6 @@ static uint64_t hdi_ground_size(const hdi_elim *m) {
     return 3 * n + 2 * n_comp + (n + n_comp) / sizeof(double) + 1;
 }
 
-/* Values of the pair grounded, factorised and inverted: sums of the inverses' diagonals by coef. */
-static hd_status hdi_ground_invert(hdi_elim *m, hdi_factor *f, const hdi_values *v, const double *coef,
-                                   double *out, hdi_scope *s) {
-    if (hdi_progress(m->ctx, "factor", 0, s->e) < 0 || hdi_factor_run(f, v, s->e) < 0) return s->e->status;
-    return hdi_elim_inverse_diagonal(m, f, coef, out, s);
-}
-
 /* Factor, diag(G) and the trace. */
 static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
@@ -15390,7 +15383,8 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
             if (*loose) *loose = 2;
         }
         hdi_ground_values(m, g, 0, val, NULL);
-        if (hdi_ground_invert(m, &g->factor, &v, &one, g->diag, &s) >= 0 && g->factor.all.negative)
+        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
+            hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0 && g->factor.all.negative)
             hdi_not_semidefinite(e);
         for (i = 0; i < lap->n_active && e->status >= 0; i++) {
             double size = lap->B ? 0 : lap->mass[i], *trace = g->trace + lap->component[i];
@@ -15427,7 +15421,7 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
         memset(&v, 0, sizeof v);
         v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
         coef[4] = -1 / step;                     /* the first one's imaginary part */
-        (void)hdi_ground_invert(m, &pack, &v, coef, g->form, &s);
+        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
         hdi_factor_free(&pack);
     }
     if (e->status < 0) return hdi_scope_end(&s);
@@ -15618,6 +15612,7 @@ typedef struct hdi_spec {
     int32_t n_near, n_blocks, room;
     double lost;                 /* largest column of a block that was dropped */
     int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
+    int32_t n_taken;             /* below the shift or, where that is the edge, above it */
     double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
     double *h;                   /* T [8 n_blocks][8 n_blocks], or [room][room + 1][8][8] of blocks */
     double *z, *d;               /* eigenvectors and eigenvalues of T */
@@ -15935,8 +15930,10 @@ static void hdi_spec_take_pairs(hdi_spec *s, const double *y, int32_t r) {
         else if (d > 0) frontier = hdi_min(frontier, x);
         s->stuck += off <= most && !(off + largest + s->lost <= most);
     }
-    for (i = 0; i < m; i++)
+    for (i = s->n_taken = 0; i < m; i++) {
         if (!(s->ritz[i] > s->edge && s->ritz[i] < frontier)) s->ritz[i] = HUGE_VAL;
+        s->n_taken += s->ritz[i] < (s->sigma > s->edge ? s->sigma : HUGE_VAL);
+    }
 }
 
 /* Eigenpairs of the projected matrix. full: all rows of the eigenvectors, else only those of the last
@@ -15972,14 +15969,6 @@ static void hdi_spec_nearby(hdi_spec *s) {
     for (i = 0; i <= s->room; i++) s->list[s->n_near + i] = s->basis + 8 * (int64_t)i * s->n;
 }
 
-/* Are `wanted` pairs to be taken on the side where the edge is? */
-static int hdi_spec_enough(const hdi_spec *s, int32_t wanted) {
-    const int above = s->sigma <= s->edge;
-    int32_t i;
-    for (i = 0; i < 8 * s->n_blocks; i++) wanted -= s->ritz[i] < HUGE_VAL && (above || s->ritz[i] < s->sigma);
-    return wanted <= 0;
-}
-
 /* Blocks until all `wanted` eigenvalues between the edge and the shift are there, at the edge itself so many
  * above it, or until the basis is full. */
 static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
@@ -15998,7 +15987,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
         if (hdi_progress(s->m->ctx, "solve", share, e) < 0) return e->status;
         if (s->n_blocks < look) continue;
         if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
-        if (s->stuck || hdi_spec_enough(s, wanted)) return HD_OK;
+        if (s->stuck || s->n_taken >= wanted) return HD_OK;
         look = s->n_blocks + HDI_SPEC_STEPS;
     }
     return HD_OK;
