@@ -15917,7 +15917,7 @@ static void hdi_spec_take_pairs(hdi_spec *s, const double *y, int32_t r) {
     double largest = 0, frontier = HUGE_VAL;
     int32_t i, a;
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
-    largest *= HDI_WIDE * DBL_EPSILON;
+    largest *= (double)HDI_WIDE * DBL_EPSILON;
     for (i = s->stuck = 0; i < m; i++, y += r) {
         const double d = s->d[i];
         double x, most, off = 0;
@@ -21238,11 +21238,10 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
     const hdi_local *l = x->local;
     const int32_t n = l->n;
     hdi_scope s = hdi_scope_begin(in->heat->ctx, in->e);
-    double *C = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n);
-    double *U = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * ROWS * (uint64_t)n);
+    const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
+    double *C = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n), *work = HDI_TAKE(&s, double, room);
+    double *U = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n * ROWS);
     double *sum = HDI_TAKE_ZERO(&s, double, ROWS * (uint64_t)n);
-    double *work = HDI_TAKE(&s, double, hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) +
-                                        3 * HDI_RESOLVENT_POINTS);
     int32_t *id = HDI_TAKE(&s, int32_t, n), i, j, q;
     hd_c64 weight[ROWS][HD_MAX_POLES];
     hdi_terms terms[HDI_PATCH_BLOCK];
@@ -21253,9 +21252,8 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
         return hdi_scope_end(&s);
     for (i = 0; i < n; i++) id[i] = i;
     for (q = 0; q < HDI_PATCH_BLOCK; q++) {
-        terms[q].n = n;
-        terms[q].vertex = id;
-        terms[q].weight = C + (int64_t)q * n;
+        const hdi_terms one = {n, 0, id, C + (int64_t)q * n};
+        terms[q] = one;
     }
     for (q = 0; q < ROWS; q++) hdi_patch_weights(&set, q, work, weight[q]);
     memset(&c, 0, sizeof c);
@@ -21269,14 +21267,14 @@ static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_
     c.rows.sum = U;
     for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
         if (hdi_patch_probes(l, q, C, U, in->e) < 0 || hdi_direct_columns(in, &c) < 0) break;
-        for (j = 0; j < HDI_PATCH_BLOCK * ROWS; j++)
+        for (j = 0; j < HDI_PATCH_BLOCK * (int32_t)ROWS; j++)
             for (i = 0; i < n; i++) {
                 const double u = in->heat->scale * U[(int64_t)j * n + i];
                 sum[(int64_t)(j % ROWS) * n + i] += u * (u / (double)HDI_PATCH_PROBES);
             }
     }
     for (q = 0; q < ROWS; q++)
-        for (i = 0, r[q] = 0; i < n && in->e->status >= 0; i++)
+        for (i = 0, r[q] = 0; i < n; i++)
             if (in->heat->elim.lap->vertex[i] < count) r[q] = hdi_max(r[q], sqrt(sum[(int64_t)q * n + i]));
     return hdi_scope_end(&s);
 }
@@ -22783,8 +22781,8 @@ static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over,
 
 /* ---- estimates of queries ---- */
 
-/* The same query by patches, each for all times. Do they cost less? */
-static int hdi_estimate_patches(const hdi_estimate *x) {
+/* The same query by patches, each for all times, and whether the run takes them. */
+static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_heat_call *h = x->h;
     hd_heat *heat = h->heat;
     const hdi_distance_row *kind = x->query->distance;
@@ -22794,8 +22792,8 @@ static int hdi_estimate_patches(const hdi_estimate *x) {
     hdi_patches p;
     hd_rational set;
     double pieces, work;
-    int pays;
-    if (!hdi_patches_can(heat) || factor == 0) return 0;
+    int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
+    if (!hdi_patches_can(heat) || factor == 0) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);
@@ -22803,7 +22801,7 @@ static int hdi_estimate_patches(const hdi_estimate *x) {
     if (!pays && hdi_patches_open(&p, &to, factor) >= 0) (void)hdi_patch_cut(&p);
     (void)hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set);
     heat->opts.tol = tol;
-    if (h->e->status < 0) return 0;
+    if (h->e->status < 0) return h->e->status;
     hdi_local_free(heat);
     pieces = ceil((double)p.n / p.core) * h->n_times;
     work = 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n;
@@ -22812,7 +22810,10 @@ static int hdi_estimate_patches(const hdi_estimate *x) {
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
-    return pays;
+    if (!asked && !pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
+    x->to->method = HD_METHOD_LOCAL;
+    x->to->reason = asked ? "asked for" : pays ? HDI_PATCHES_PAY : HDI_PATCHES_FIT;
+    return HD_OK;
 }
 
 /* A query at times, by poles or by what the run picks. Where few eigenpairs serve, from time `few` on, they
@@ -22873,13 +22874,8 @@ static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row
     for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
     if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
     if (query->by == HDI_BY_INVERSION) {
-        const int asked = heat->opts.method == HD_METHOD_LOCAL, pays = hdi_estimate_patches(&x);
-        if (h->e->status < 0 || (!asked && hdi_estimate_times(&x) < 0)) return h->e->status;
-        if (!to->cost[HD_METHOD_LOCAL].possible ||
-            !(asked || pays || c->bytes > hdi_bytes_left(heat->ctx))) return HD_OK;
-        to->method = HD_METHOD_LOCAL;
-        to->reason = asked ? "asked for" : pays ? HDI_PATCHES_PAY : HDI_PATCHES_FIT;
-        return HD_OK;
+        if (heat->opts.method != HD_METHOD_LOCAL && hdi_estimate_times(&x) < 0) return h->e->status;
+        return hdi_estimate_patches(&x);
     }
     if (h->t > 0) return hdi_estimate_times(&x);
     to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
