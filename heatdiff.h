@@ -15576,6 +15576,7 @@ typedef struct hdi_spec {
     int64_t negative;            /* its negative pivots; -1: there is no factor */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double edge;                 /* all below are found */
+    double behind;               /* the largest shift below which a run left some; 0: none */
     int32_t idle;                /* shifts in a row with nothing new below them */
     double **lock;               /* [room_lock] blocks of vectors found, n_lock are there */
     int32_t n_lock, room_lock;
@@ -16249,11 +16250,11 @@ static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     return HD_OK;
 }
 
-/* A bound from below of all eigenvalues but the first n. Of values found above the shift nobody knows whether
- * some are missing between them. */
+/* A bound from below of all eigenvalues but the first n. Above its shift a run takes values without a gap;
+ * but where one has left some behind, others may be missing among those found. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
     const int32_t proven = s->out->proven;
-    const double counted = proven && s->found < s->n ? s->sigma : HUGE_VAL;
+    const double counted = proven && s->found < s->n && s->sigma < s->behind ? s->sigma : HUGE_VAL;
     if (n == s->n) return HUGE_VAL;
     if (n < s->found && s->pair[n].value < counted)
         return hdi_max(0, s->pair[n].value - hdi_ratio_root(s->lap) * s->pair[n].residual);
@@ -16295,6 +16296,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
         if (missing > 0) {                       /* a run at the shift */
             if (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
             stalls = s->found > before ? 0 : stalls + 1;
+            if (s->negative > hdi_spec_rank(s, s->sigma)) s->behind = hdi_max(s->behind, s->sigma);
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
         failed += missing < 0;
