@@ -15212,18 +15212,21 @@ static HDI_COLD hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
+    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int64_t at;
-    int32_t k, *vertex;
-    double *weight;
+    int32_t k, *vertex = NULL;
+    double *weight = NULL;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    at = hdi_source_first(s, s->count) * hdi_source_corners(s);
-    vertex = HDI_TAKE(keep, int32_t, at);
-    weight = HDI_TAKE(keep, double, at);
+    if (!plain) {
+        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
+        vertex = HDI_TAKE(keep, int32_t, size);
+        weight = HDI_TAKE(keep, double, size);
+    }
     for (k = 0; k < s->count && e->status >= 0; k++) {
-        at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
+        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
+        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
@@ -15598,6 +15601,7 @@ typedef struct hdi_spec {
     int64_t negative;            /* its negative pivots; -1: there is no factor */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double edge;                 /* all below are found */
+    double behind;               /* the largest shift below which a run left some; 0: none */
     int32_t idle;                /* shifts in a row with nothing new below them */
     double **lock;               /* [room_lock] blocks of vectors found, n_lock are there */
     int32_t n_lock, room_lock;
@@ -16211,13 +16215,10 @@ static int32_t hdi_spec_half(const hdi_spec *s) { return hdi_low32(HDI_SPEC_HALF
 
 /* Mean distance of the last values found, and not less than a part of the mean of all. */
 static double hdi_spec_spacing(const hdi_spec *s) {
-    const int32_t f = s->found, q = hdi_low32(f - 1, HDI_SPEC_HALF / 2);
-    double step = s->unit;
-    if (f > s->out->n_constant) {
-        step = 0.2 * s->pair[f - 1].value / f;
-        if (q > 0) step = hdi_max(step, (s->pair[f - 1].value - s->pair[f - 1 - q].value) / q);
-    }
-    return step;
+    const int32_t last = s->found - 1, q = hdi_low32(last, HDI_SPEC_HALF / 2);
+    if (s->found <= s->out->n_constant) return s->unit;
+    return hdi_max(0.2 * s->pair[last].value / s->found,
+                   (s->pair[last].value - s->pair[last - q].value) / hdi_high32(q, 1));
 }
 
 /* How many of the pairs found are wanted. *all: nothing wanted can follow, if nothing is missing between. */
@@ -16274,11 +16275,15 @@ static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     return HD_OK;
 }
 
-/* A bound from below of all eigenvalues but the first n. */
+/* A bound from below of all eigenvalues but the first n. Above its shift a run takes values without a gap;
+ * but where one has left some behind, others may be missing among those found. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
-    if (n < s->found) return hdi_max(0, s->pair[n].value - hdi_ratio_root(s->lap) * s->pair[n].residual);
+    const int32_t proven = s->out->proven;
+    const double counted = proven && s->found < s->n && s->sigma < s->behind ? s->sigma : HUGE_VAL;
     if (n == s->n) return HUGE_VAL;
-    return s->out->proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->pair[n - 1].value : 0;
+    if (n < s->found && s->pair[n].value < counted)
+        return hdi_max(0, s->pair[n].value - hdi_ratio_root(s->lap) * s->pair[n].residual);
+    return proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->pair[n - 1].value : 0;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
@@ -16316,6 +16321,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
         if (missing > 0) {                       /* a run at the shift */
             if (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
             stalls = s->found > before ? 0 : stalls + 1;
+            if (s->negative > hdi_spec_rank(s, s->sigma)) s->behind = hdi_max(s->behind, s->sigma);
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
         failed += missing < 0;
@@ -16736,10 +16742,10 @@ static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     const hd_laplacian *lap = a->of->s.lap;
     const int32_t own = a->power ? hdi_terms_component(lap, from) : -1;
     int32_t q, v;
-    for (v = 0; v < lap->n && (a->power || (a->diagonal && a->mass)); v++) {
+    for (v = 0; v < lap->n; v++) {
         const int32_t row = lap->row[v];
-        if (a->diagonal) a->column[v] = row == HD_ROW_INERT ? 1 : a->column[v];
-        if (a->diagonal || (row >= 0 && lap->component[row] == own)) continue;
+        if (a->diagonal && a->mass && row == HD_ROW_INERT) a->column[v] = 1;
+        if (!a->power || (row >= 0 && lap->component[row] == own)) continue;
         a->column[v] = from->weight || v != from->one ? HUGE_VAL : 0;
         if (a->off) a->off[v] = 0;
     }
