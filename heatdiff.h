@@ -21101,11 +21101,10 @@ typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t stamp;               /* of marks */
+    int32_t stamp, done;         /* of marks; pieces that are answered */
     int32_t core, most;          /* pieces have so many rows at most, patches fewer than most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
-    int32_t done;                /* pieces that are answered */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
 } hdi_patches;
 
@@ -21130,8 +21129,7 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Cuts what is to become so many pieces in two, after ordering it breadth-first from a row at its end.
- * Returns where the second part begins. */
+/* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second one begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
     int32_t last;
     hdi_patch_walk(x, x->row + begin, end - begin);
@@ -21166,10 +21164,9 @@ static double hdi_patch_cut(hdi_patches *x) {
     const double wide = (double)h->heat->source->L.nnz / n;
     double least = HUGE_VAL;
     int32_t begin = 0, end = x->n, middle;
-    for (;;) {
+    while (hdi_patch_find(x, begin, end, INT32_MAX) >= 0) {
         hdi_fill f;
         double cost, more;
-        if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return 0;
         f = hdi_fill_guess(x->local->n, x->local->n * wide);
         if (least == HUGE_VAL) x->fill = f;
         cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
@@ -21343,8 +21340,7 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
     }
 }
 
-/* The piece of the first `core` rows of the patch. Values go to the caller if they leave out no more than
- * `wanted`. */
+/* The patch of a piece of `core` rows. The caller gets values that leave out no more than `wanted`. */
 static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_report *rep) {
     hdi_heat_call *h = x->to->task.h, in;
     hd_heat *own = &x->local->heat;
@@ -21389,10 +21385,9 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
     rep.n_touched = x->local->n;
-    if (h->e->status < 0) return h->e->status;
-    hdi_report_merge(h->rep, &rep);
+    if (h->e->status >= 0) hdi_report_merge(h->rep, &rep);
     x->done++;
-    return HD_OK;
+    return h->e->status;
 }
 
 /* Room for pieces of all rows, or of those wanted. */
@@ -22797,7 +22792,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_diagonals to;
     hdi_patches p;
     hd_rational set;
-    double pieces, work;
+    double pieces;
     int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
     if (!hdi_patches_can(heat) || factor == 0) return h->e->status;
     memset(&to, 0, sizeof to);
@@ -22810,9 +22805,8 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     if (h->e->status < 0) return h->e->status;
     hdi_local_free(heat);
     pieces = ceil((double)p.n / p.core) * h->n_times;
-    work = 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n;
     hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
-    c->seconds += pieces * work / HDI_RATE_PACK;
+    c->seconds += pieces * 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n / HDI_RATE_PACK;
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
