@@ -21129,7 +21129,7 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second one begins. */
+/* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
     int32_t last;
     hdi_patch_walk(x, x->row + begin, end - begin);
@@ -21419,7 +21419,7 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     const int32_t n = h->heat->source->n_active, most = n / 16;
     if (n < HDI_PATCH_FROM || hdi_patches_open(x, to, factor) < 0) return 0;
     return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
-           hdi_patch_cut(x) < 0;
+           hdi_patch_cut(x) < 0 && h->e->status >= 0;
 }
 
 /* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
