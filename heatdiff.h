@@ -21093,7 +21093,7 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
 #define HDI_PATCH_ROW 3600
 #define HDI_WHOLE_ROW 2900
-/* Bytes for each number of the real factor, as measured: four complex factors and the rest; with eight. */
+/* Bytes of a patch for each number of its real factor, as measured: with four complex factors, with eight. */
 #define HDI_PATCH_BYTES 170
 #define HDI_PATCH_EXACT 255
 
@@ -21165,9 +21165,8 @@ static double hdi_patch_cut(hdi_patches *x) {
     double least = HUGE_VAL;
     int32_t begin = 0, end = x->n, middle;
     while (hdi_patch_find(x, begin, end, INT32_MAX) >= 0) {
-        hdi_fill f;
+        const hdi_fill f = hdi_fill_guess(x->local->n, x->local->n * wide);
         double cost, more;
-        f = hdi_fill_guess(x->local->n, x->local->n * wide);
         if (least == HUGE_VAL) x->fill = f;
         cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
         more = hdi_bytes_left(h->heat->ctx) / (x->each * f.stored);
