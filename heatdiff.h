@@ -16784,7 +16784,7 @@ static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
 
 /* Checks and completes a call. */
 static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd_spectrum *s, hd_error *e) {
-    static const double zero = 0;
+    static const double hdi_zero = 0;
     const hdi_distance_row *row = a->distance ? hdi_distance_of((hd_distance_kind)a->kind) : NULL;
     const int32_t k = a->diagonal ? 1 : a->sources->count;
     int32_t q;
@@ -16795,7 +16795,7 @@ static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd
     x->mass = row ? row->mass > 0 : a->kind == HD_KERNEL_OPERATOR;
     if (x->power && a->n_times <= 1) {
         a->n_times = 1;
-        a->t = &zero;
+        a->t = &hdi_zero;
     }
     if (a->ld == 0) a->ld = (size_t)s->n;
     if ((a->n_times > 0 && !a->t) || (k > 0 && !a->out)) return hdi_missing(e);
