@@ -2571,7 +2571,7 @@ static hd_status estimate_samples(const run *r, hd_heat *heat, hd_estimate *e, h
     hd_estimate twice;
     int32_t k;
     const hd_query query = query_of(r, &k);
-    if (k > INT32_MAX / 2 || strstr(e->reason, "eigenpairs")) return HD_OK;
+    if (e->method != HD_METHOD_DIRECT || k > INT32_MAX / 2 || strstr(e->reason, "eigenpairs")) return HD_OK;
     if (hd_heat_estimate(heat, query, 1, r->times, 2 * k, &twice, err) < 0) return err->status;
     c->seconds += (ONE_BY_ONE - 1) * (twice.cost[HD_METHOD_DIRECT].seconds - c->seconds);
     e->cost[0] = *c;
