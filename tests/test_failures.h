@@ -440,7 +440,7 @@ static void fail_calls(void) {
 
 static void fail_queries(void) {
     fail_open();
-    fail_step = CASES_FEW ? 7 : 1;
+    fail_step = CASES_FEW ? 11 : 1;
     fail_methods();
     fail_close("queries", 15000 / fail_step, 2000, 5000, 1500);
     fail_step = 1;
