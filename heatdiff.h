@@ -21090,9 +21090,9 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
-/* What a row costs besides the factor, in flops of the factor: on a patch, with probes, and on the mesh. */
-#define HDI_PATCH_ROW 3600
-#define HDI_WHOLE_ROW 2900
+/* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K rows. */
+#define HDI_PATCH_ROW 1800
+#define HDI_WHOLE_ROW 500
 /* Bytes of a patch for each number of its real factor, as measured: with four complex factors, with eight. */
 #define HDI_PATCH_BYTES 170
 #define HDI_PATCH_EXACT 255
