@@ -21090,7 +21090,7 @@ enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
-/* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K rows. */
+/* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
 /* Bytes of a patch for each number of its real factor, as measured: with four complex factors, with eight. */
