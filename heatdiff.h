@@ -2291,8 +2291,7 @@ static hd_status hdi_enter(hdi_call *c, hd_context *ctx, int given, hd_error *er
 
 /* The same where options may name the context. Options that were not cleared are an error, and nothing in
  * them is used. */
-static HDI_NOINLINE hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text,
-                                             hd_error *err) {
+static hd_status hdi_enter_with(hdi_call *c, int cleared, hd_context *ctx, const char *text, hd_error *err) {
     if (hdi_enter(c, cleared ? ctx : NULL, 1, err) < 0) return c->e->status;
     return cleared ? HD_OK : hdi_fail(c->e, HD_ERR_ARGUMENT, text);
 }
@@ -3376,8 +3375,7 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
 }
 
 /* ---- rows of L and B against blocks ---- */
-/* These, and what one real right-hand side takes, are bound by memory: AVX-512 takes AVX2's kernels, measured
- * as fast or faster. */
+/* They are bound by memory, as is one real right-hand side: AVX-512 takes AVX2's kernels. */
 
 #if HDI_WIDTH <= 4
 enum { HDI_OF(residual_ahead) = 8 };
@@ -15184,9 +15182,8 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
 }
 
 /* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
-static HDI_COLD hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k,
-                                         const hd_laplacian *lap, int normal, int32_t *vertex, double *weight,
-                                         hdi_scope *in) {
+static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
+                                int normal, int32_t *vertex, double *weight, hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
     const int32_t corners = hdi_source_corners(s), all = (int32_t)n * corners;
     hd_error *e = in->e;
@@ -21076,17 +21073,14 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * q being the rows of the rim (Duhamel's formula, once for each way). The r(s) of all x of a core are
  * measured at once: by symmetry they are what k_s makes of random functions on the rim. */
 
-/* Random functions, in all and at a time; times at which they are taken, relative to t; these and an
- * integral; steps of integrals. */
-enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4,
-       HDI_PATCH_STEPS = 32 };
+/* Random functions, in all and at once; times where they are taken, over t; these and an integral. */
+enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
-enum { HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
+enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
-/* Of hdi_mass_solve: a hundredth of the functions. */
-#define HDI_PATCH_STOP 1e-4
+#define HDI_PATCH_STOP 1e-4      /* of hdi_mass_solve: a hundredth of the functions */
 /* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
@@ -21102,23 +21096,24 @@ typedef struct hdi_patches {
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
     int32_t stamp, done;         /* of marks; pieces that are answered */
-    int32_t core, most;          /* pieces have so many rows at most, patches fewer than most */
+    int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
 } hdi_patches;
 
-/* Orders the rows of a piece breadth-first from the first of them, without leaving the piece. */
-static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
+/* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
+static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
     int32_t i, head = 0, tail = 0;
     int64_t p;
     x->stamp++;
     for (i = 0; i < n; i++) x->mark[row[i]] = x->stamp;
     for (i = 0; i < n; i++) {
-        if (x->mark[row[i]] != x->stamp) continue;
-        x->mark[row[i]] = 0;
-        for (x->queue[tail++] = row[i]; head < tail; head++) {
+        const int32_t from = row[last ? n - 1 - i : i];
+        if (x->mark[from] != x->stamp) continue;
+        x->mark[from] = 0;
+        for (x->queue[tail++] = from; head < tail; head++) {
             for (p = L->row_ptr[x->queue[head]]; p < L->row_ptr[x->queue[head] + 1]; p++) {
                 if (x->mark[L->col[p]] != x->stamp) continue;
                 x->mark[L->col[p]] = 0;
@@ -21131,12 +21126,8 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n) {
 
 /* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
-    int32_t last;
-    hdi_patch_walk(x, x->row + begin, end - begin);
-    last = x->row[end - 1];
-    x->row[end - 1] = x->row[begin];
-    x->row[begin] = last;
-    hdi_patch_walk(x, x->row + begin, end - begin);
+    hdi_patch_walk(x, x->row + begin, end - begin, 0);
+    hdi_patch_walk(x, x->row + begin, end - begin, 1);
     return begin + (int32_t)((int64_t)(end - begin) * (pieces / 2) / pieces);
 }
 
@@ -21371,11 +21362,9 @@ static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
-    const int32_t most = end - begin < 2 * HDI_PATCH_LEAST ? INT32_MAX : x->most;
     hd_report rep;
     int32_t tries;
-    for (tries = 1; hdi_patch_find(x, begin, end, most) >= 0; tries++) {
-        if (x->local->n >= most) return hdi_fail(h->e, HD_ERR_MEMORY_LIMIT, "a patch is too large");
+    for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
@@ -21398,7 +21387,6 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
-    x->most = INT32_MAX;
     x->each = hdi_exacting(h->heat) ? HDI_PATCH_EXACT : HDI_PATCH_BYTES;
     x->reach = 1;
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
@@ -21430,7 +21418,6 @@ static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
         if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
         if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
         hdi_error_clear(h->e);
-        x->most = hdi_low32(x->most, x->local->n);
         hdi_local_free(h->heat);
         x->local = hdi_local_open(h->heat, h->e);
         if (h->e->status < 0) return h->e->status;
