@@ -15598,7 +15598,6 @@ typedef struct hdi_spec {
     int64_t negative;            /* its negative pivots; -1: there is no factor */
     double unit;                 /* about the smallest eigenvalue that is not zero */
     double edge;                 /* all below are found */
-    double behind;               /* the largest shift below which a run left some; 0: none */
     int32_t idle;                /* shifts in a row with nothing new below them */
     double **lock;               /* [room_lock] blocks of vectors found, n_lock are there */
     int32_t n_lock, room_lock;
@@ -16272,15 +16271,26 @@ static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     return HD_OK;
 }
 
-/* A bound from below of all eigenvalues but the first n. Above its shift a run takes values without a gap;
- * but where one has left some behind, others may be missing among those found. */
+/* A bound from below of all eigenvalues but the first n. Between values found above the last shift others may
+ * be missing, which no count has seen. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
     const int32_t proven = s->out->proven;
-    const double counted = proven && s->found < s->n && s->sigma < s->behind ? s->sigma : HUGE_VAL;
     if (n == s->n) return HUGE_VAL;
-    if (n < s->found && s->pair[n].value < counted)
+    if (n < s->found && (!proven || s->found == s->n || s->pair[n].value < s->sigma))
         return hdi_max(0, s->pair[n].value - hdi_ratio_root(s->lap) * s->pair[n].residual);
     return proven ? hdi_max(0, s->sigma - s->off) : n > 0 ? s->pair[n - 1].value : 0;
+}
+
+/* Counts once more where the first value beyond n, the number wanted, is far above the shift. */
+static hd_status hdi_spec_raise(hdi_spec *s, int32_t n, hd_error *e) {
+    const double sigma = s->sigma, off = s->off, last = n > 0 ? s->pair[n - 1].value : s->edge;
+    const double gap = n < s->found && s->found < s->n ? s->pair[n].value - last : 0;
+    if (!s->out->proven || !(sigma - last < gap / 2)) return HD_OK;
+    if (hdi_spec_shift(s, last + 0.8 * gap, e) < 0 || (s->negative == n && hdi_spec_sure(s)))
+        return e->status;
+    s->sigma = sigma;
+    s->off = off;
+    return HD_OK;
 }
 
 /* The first run: the low end, from a shift below all eigenvalues. */
@@ -16318,7 +16328,6 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
         if (missing > 0) {                       /* a run at the shift */
             if (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
             stalls = s->found > before ? 0 : stalls + 1;
-            if (s->negative > hdi_spec_rank(s, s->sigma)) s->behind = hdi_max(s->behind, s->sigma);
         }
         s->idle = missing == 0 ? s->idle + 1 : 0;
         failed += missing < 0;
@@ -16332,6 +16341,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
         if (s->found == s->n) *proven = 1;
     }
     s->out->count = hdi_spec_wanted(s, &all);
+    if (hdi_spec_raise(s, s->out->count, e) < 0) return e->status;
     s->out->next = s->m->scale * hdi_spec_rest(s, s->out->count);
     if (all || *proven) return HD_OK;
     return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: some eigenpairs were not found");
