@@ -16285,9 +16285,8 @@ static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
 static hd_status hdi_spec_raise(hdi_spec *s, int32_t n, hd_error *e) {
     const double sigma = s->sigma, off = s->off, last = n > 0 ? s->pair[n - 1].value : s->edge;
     const double gap = n < s->found && s->found < s->n ? s->pair[n].value - last : 0;
-    if (!s->out->proven || !(sigma - last < gap / 2)) return HD_OK;
-    if (hdi_spec_shift(s, last + 0.8 * gap, e) < 0 || (s->negative == n && hdi_spec_sure(s)))
-        return e->status;
+    if (!(sigma - last < gap / 2) || hdi_spec_shift(s, last + 0.8 * gap, e) < 0 ||
+        (s->negative == n && hdi_spec_sure(s))) return e->status;
     s->sigma = sigma;
     s->off = off;
     return HD_OK;
@@ -16341,7 +16340,7 @@ static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
         if (s->found == s->n) *proven = 1;
     }
     s->out->count = hdi_spec_wanted(s, &all);
-    if (hdi_spec_raise(s, s->out->count, e) < 0) return e->status;
+    if (*proven && hdi_spec_raise(s, s->out->count, e) < 0) return e->status;
     s->out->next = s->m->scale * hdi_spec_rest(s, s->out->count);
     if (all || *proven) return HD_OK;
     return hdi_fail(e, HD_ERR_NOT_CONVERGED, "spectrum: some eigenpairs were not found");
@@ -17242,13 +17241,12 @@ typedef struct hdi_entry_list {
     int64_t n;
 } hdi_entry_list;
 
-/* Rows of an answer that leaves zeros out, added in any order. */
+/* Rows of an answer that leaves zeros out, added in any order, as are the values of a row. */
 typedef struct hdi_sparse {
     int64_t n, room;
     double *val;                 /* [room] */
     int32_t *col;                /* [room] in val's block */
     int64_t *begin, *end;        /* of each row */
-    double *dense;               /* [n] of methods that answer so, or NULL */
     double cut;                  /* what is smaller is left out, relative to the row's largest */
 } hdi_sparse;
 
@@ -17263,10 +17261,31 @@ typedef struct hdi_request {
     hdi_sparse *sparse;          /* rows in place of columns of U; row q n_times + m */
     double *U;                   /* item q at time m goes to column q n_times + m, ldu apart; NULL: nowhere */
     size_t ldf, ldu;
+    int32_t first;               /* the request is for items first to first + k - 1 */
 } hdi_request;
 
 /* How much residuals change a column, in the norms of B and of B + tL. */
 typedef struct hdi_column_parts { double by_b, by_m; } hdi_column_parts;
+
+/* A row, how far it is, the row among the first from which that is, and what lengths there are multiplied
+ * by. */
+typedef struct hdi_reached { double way, unit; int32_t row, from; } hdi_reached;
+
+/* A part of the mesh, see "local". */
+typedef struct hdi_local {
+    hd_heat heat;                /* a plan for the pair of the part */
+    const hd_laplacian *source;  /* the whole */
+    hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
+    int32_t *row;
+    hdi_rim rim;
+    hdi_reached *at;             /* [n] of [room]: rows within reach, in the order they were reached */
+    int32_t n;
+    int64_t room;
+    /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
+    int32_t *place;
+    double smallest, largest;    /* b_diag of the source in a version of it */
+    int64_t version;
+} hdi_local;
 
 /* A call. It takes a few items at a time, each in a lane. */
 typedef struct hdi_heat_call {
@@ -17293,6 +17312,8 @@ typedef struct hdi_heat_call {
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
     const hdi_rim *rim;          /* on a part of the mesh: the part's */
+    const hdi_local *part;       /* that part, where the request is in terms of the whole */
+    double most;                 /* its answers are stored if they leave out no more than this */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
     double left_out;             /* and what the part leaves out of k_t, scaled */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
@@ -17545,13 +17566,34 @@ static int hdi_lane_bounded(const hdi_heat_call *h) {
     return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
+/* The pair of the request: the copy at hand, or if that is of a part what the part was taken from. */
+static const hd_laplacian *hdi_call_whole(const hdi_heat_call *h) {
+    return h->part ? h->part->source : h->lap;
+}
+
+#define HDI_ROW_BEYOND (-3)      /* not on the part */
+
+/* The row of a vertex of the request, negative if there is none. */
+static int32_t hdi_call_row(const hdi_heat_call *h, int32_t v) {
+    const int32_t row = hdi_call_whole(h)->row[v];
+    if (!h->part || row < 0) return row;
+    return h->part->place[row] > 0 ? h->lap->row[h->part->place[row] - 1] : HDI_ROW_BEYOND;
+}
+
+/* The request's vertex of a row. */
+static int32_t hdi_call_vertex(const hdi_heat_call *h, int32_t row) {
+    const int32_t v = h->lap->vertex[row];
+    return h->part ? h->part->source->vertex[h->part->row[v]] : v;
+}
+
 /* A source into x by rows, where its vertices have one. Returns |diag(B)^-1/2 x|. */
-static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double *x) {
+static double hdi_lane_terms(const hdi_heat_call *h, const hdi_terms *c, double *x) {
+    const hd_laplacian *lap = h->lap;
     double norm = 0;
     int32_t q;
     memset(x, 0, (size_t)lap->n_active * sizeof *x);
     for (q = 0; q < c->n; q++) {
-        const int32_t row = lap->row[hdi_terms_at(c, q)];
+        const int32_t row = hdi_call_row(h, hdi_terms_at(c, q));
         if (row < 0) continue;
         x[row] = hdi_terms_weight(c, q);
         norm = hdi_pythag(norm, x[row] / sqrt(lap->b_diag[row]));
@@ -17560,12 +17602,13 @@ static double hdi_lane_terms(const hd_laplacian *lap, const hdi_terms *c, double
 }
 
 /* rhs = B f for the f of a source. */
-static void hdi_lane_terms_mass(const hd_laplacian *lap, const hdi_terms *c, hdi_lane *lane) {
+static void hdi_lane_terms_mass(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
     int32_t q;
     int64_t p;
     memset(lane->rhs, 0, (size_t)lap->n_active * sizeof *lane->rhs);
     for (q = 0; q < c->n; q++) {
-        const int32_t row = lap->row[hdi_terms_at(c, q)];
+        const int32_t row = hdi_call_row(h, hdi_terms_at(c, q));
         if (row < 0) continue;
         if (!lap->B) lane->rhs[row] = lap->mass[row] * lane->f[row];
         for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
@@ -17574,13 +17617,16 @@ static void hdi_lane_terms_mass(const hd_laplacian *lap, const hdi_terms *c, hdi
 }
 
 /* A field into x by rows, scaled by a power of two so that its values are near one. */
-static void hdi_lane_field(const hd_laplacian *lap, const double *f, hdi_lane *lane, double *x) {
+static void hdi_lane_field(const hdi_heat_call *h, const double *f, hdi_lane *lane, double *x) {
+    const int32_t n = h->lap->n_active;
     double most = 0;
     int32_t i;
-    hdi_gather(lap, f, x);
-    for (i = 0; i < lap->n_active; i++) most = hdi_max(most, fabs(x[i]));
+    for (i = 0; i < n; i++) {
+        x[i] = f[hdi_call_vertex(h, i)];
+        most = hdi_max(most, fabs(x[i]));
+    }
     if (most > 0) frexp(most, &lane->exponent);
-    for (i = 0; i < lap->n_active; i++) x[i] = ldexp(x[i], -lane->exponent);
+    for (i = 0; i < n; i++) x[i] = ldexp(x[i], -lane->exponent);
 }
 
 /* Field and right-hand side of item q: what is given is f or, of adjoints and k_t, the right-hand side. A
@@ -17597,12 +17643,12 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->steps = lane->skip = 0;
     lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
-    lane->watch = h->watching && !fields && !c.weight ? lap->row[c.one] : -1;
+    lane->watch = h->watching && !fields && !c.weight ? hdi_call_row(h, c.one) : -1;
     lane->dual = query == HDI_QUERY_ADJOINT;
     if (fields) {
-        hdi_lane_field(lap, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
+        hdi_lane_field(h, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
     } else {
-        lane->f_norm = hdi_lane_terms(lap, &c, x);
+        lane->f_norm = hdi_lane_terms(h, &c, x);
         lane->skip = lane->f_norm == 0;
         if (lane->skip) return HD_OK;
         if (!given && hdi_lane_bounded(h)) {
@@ -17615,7 +17661,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     }
     if (given) {
         if (fields) hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-        else hdi_lane_terms_mass(lap, &c, lane);
+        else hdi_lane_terms_mass(h, &c, lane);
         if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, HDI_MASS_STOP, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
@@ -17638,21 +17684,23 @@ static double hdi_heat_unit(const hdi_heat_call *h) {
 
 /* The entries of item q, from the lane's answer. */
 static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
+    const hd_laplacian *lap = h->lap, *whole = hdi_call_whole(h);
     const hdi_entry_list *list = h->ask.list;
     const double unit = hdi_heat_unit(h);
     double *values = list->values + list->n * h->now;
     int64_t p;
     for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
         const hdi_pair at = list->order[p];
-        const int32_t v = list->rows[at.id], row = lap->row[v], solved = row >= 0 && !lane->skip;
+        const int32_t v = list->rows[at.id], row = hdi_call_row(h, v), beyond = row == HDI_ROW_BEYOND;
         hdi_parts off = {0, 0, 0, 0};
-        values[at.id] = solved ? unit * lane->u[row] : 0;
+        values[at.id] = row >= 0 && !lane->skip ? unit * lane->u[row] : 0;
         if (row == HD_ROW_INERT)
             values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
-        if (solved)
+        if ((row >= 0 || beyond) && !lane->skip) {
+            const double b = beyond ? h->heat->scale * whole->b_diag[whole->row[v]] : lap->b_diag[row];
             off = h->by_pairs ? lane->off_value
-                  : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(lap->b_diag[row]), lane->off);
+                  : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(b), lane->off);
+        }
         if (h->by_pairs || hdi_parts_sum(&off) > 0) off.rounding += HDI_FAINT;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
@@ -17663,7 +17711,7 @@ static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
     const hdi_terms c = hdi_heat_source(h, q);
     int32_t i;
     for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
-        if (h->lap->row[hdi_terms_at(&c, i)] == HD_ROW_INERT)
+        if (hdi_call_row(h, hdi_terms_at(&c, i)) == HD_ROW_INERT)
             u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
@@ -17673,16 +17721,19 @@ static hd_status hdi_fail_range(hd_error *e, int32_t v, double value) {
     return hdi_fail_face(e, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles", -1, v, value);
 }
 
-/* Adds a row of values to the sparse answer, in ascending order, or all n without one. */
-static hd_status hdi_sparse_row(hdi_sparse *to, int64_t row, int32_t n, const hdi_pair *order,
-                                const double *u, hd_context *ctx, hd_error *e) {
+/* Adds the column of item q to the sparse answer. */
+static void hdi_heat_store_sparse(const hdi_heat_call *h, int32_t q, const hdi_lane *lane, hdi_sparse *to) {
+    hd_context *ctx = h->heat->ctx;
+    const hdi_terms c = hdi_heat_source(h, q);
+    const int64_t row = (int64_t)q * h->ask.n_times + h->now;
+    const int32_t n = lane->skip ? 0 : h->lap->n_active;
+    const double unit = hdi_heat_unit(h);
     double most = 0;
     int32_t i;
-    for (i = 0; i < n; i++) most = hdi_max(most, fabs(u[i]));
-    if (to->n + n > to->room) {
-        const int64_t room = 2 * to->n + n;
-        double *val = HDI_NEW(ctx, double, (room + room / 2 + 1), e);
-        if (!val) return e->status;
+    if (to->n + n + c.n > to->room) {
+        const int64_t room = 2 * to->n + n + c.n;
+        double *val = HDI_NEW(ctx, double, (room + room / 2 + 1), h->e);
+        if (!val) return;
         if (to->n > 0) memcpy(val, to->val, (size_t)to->n * sizeof *val);
         if (to->n > 0) memcpy(val + room, to->col, (size_t)to->n * sizeof *to->col);
         hdi_free(ctx, to->val);
@@ -17691,45 +17742,46 @@ static hd_status hdi_sparse_row(hdi_sparse *to, int64_t row, int32_t n, const hd
         to->room = room;
     }
     to->begin[row] = to->n;
-    for (i = 0; i < n; i++) {
-        const double value = u[order ? order[i].id : i];
-        if (value == 0 || fabs(value) < to->cut * most) continue;
-        to->col[to->n] = order ? (int32_t)order[i].key : i;
+    for (i = 0; i < n; i++) most = hdi_max(most, fabs(unit * lane->u[i]));
+    for (i = 0; i < n + c.n; i++) {
+        const int32_t v = i < n ? hdi_call_vertex(h, i) : hdi_terms_at(&c, i - n);
+        const double value = i < n ? unit * lane->u[i] : hdi_terms_weight(&c, i - n);
+        if (i >= n && (h->ask.query != HDI_QUERY_OPERATOR || hdi_call_row(h, v) != HD_ROW_INERT)) continue;
+        if (hdi_fail_range(h->e, v, value) < 0) return;
+        if (value == 0 || (i < n && fabs(value) < to->cut * most)) continue;
+        to->col[to->n] = v;
         to->val[to->n++] = value;
     }
     to->end[row] = to->n;
-    return e->status;
 }
 
 /* Stores the answer of item q at the time under way, from its lane. */
 static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
+    const hd_laplacian *whole = hdi_call_whole(h);
     const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)h->now;
     const double unit = hdi_heat_unit(h);
     const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
-    hdi_sparse *sparse = h->ask.sparse;
     const double *out = hdi_lane_answer(lane);
     int32_t i;
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
-    if (sparse && !sparse->dense) sparse->dense = HDI_NEW(h->heat->ctx, double, lap->n, h->e);
-    if (sparse) u = sparse->dense;
+    if (h->ask.sparse) hdi_heat_store_sparse(h, q, lane, h->ask.sparse);
     if (!u) return;
     if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
-        if (u != f) memmove(u, f, (size_t)lap->n * sizeof *u);
+        if (u != f) memmove(u, f, (size_t)whole->n * sizeof *u);
     } else {
-        memset(u, 0, (size_t)lap->n * sizeof *u);
+        memset(u, 0, (size_t)whole->n * sizeof *u);
         hdi_heat_store_inert(h, q, u);
     }
-    for (i = 0; i < lap->n && (lap->n_held > 0 || h->rate); i++)
-        if (h->rate || lap->row[i] == HD_ROW_HELD) u[i] = 0;
-    for (i = 0; i < lap->n_active && !lane->skip && !copy; i++) {
+    for (i = 0; i < whole->n && (whole->n_held > 0 || h->rate || h->part); i++)
+        if (h->rate || whole->row[i] == HD_ROW_HELD || (h->part && whole->row[i] >= 0)) u[i] = 0;
+    for (i = 0; i < h->lap->n_active && !lane->skip && !copy; i++) {
         const double value = lane->exponent ? ldexp(unit * out[i], lane->exponent) : unit * out[i];
-        u[lap->vertex[i]] = value;
-        if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, lap->vertex[i], value) < 0) return;
+        const int32_t v = hdi_call_vertex(h, i);
+        u[v] = value;
+        if ((lane->exponent > 0 || hdi_nan(value)) && hdi_fail_range(h->e, v, value) < 0) return;
     }
-    if (sparse) (void)hdi_sparse_row(sparse, (int64_t)column, lap->n, NULL, u, h->heat->ctx, h->e);
 }
 
 /* Makes lanes for the items of the call, at most `most` at a time, with room for steps of Lanczos or
@@ -17758,7 +17810,7 @@ static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
     for (q = 0; q < h->ask.k && fields; q++) {
         const hdi_lane *lane = h->heat->lane;
         double most;
-        if (hdi_heat_load(h, q, h->heat->lane) < 0) return h->e->status;
+        if (hdi_heat_load(h, h->ask.first + q, h->heat->lane) < 0) return h->e->status;
         most = (direct ? 2 : 1) * HDI_UNIFORM_SHARE * sqrt(hdi_lane_means_norm2(lane, h->lap));
         while (*degree < HDI_RAT_UNIFORM_MAX &&
                hdi_rational_get(&set, HD_POLES_UNIFORM, *degree, h->e) >= 0 &&
@@ -17887,7 +17939,7 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
     }
     for (i = 0; i < lap->n_components; i++)
         if (part ? !h->rate : hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
-    if (!h->ask.list) {
+    if (!h->ask.list || h->part) {
         hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
         if (lane->f_norm > 0 && (total > 0 || lane->dual || h->by_pairs))
@@ -17932,7 +17984,7 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
         const hdi_lane *lane = h->heat->lane + i;
         if (lane->status >= 0 || (h->e->status < 0 && h->e->status != HD_ERR_CANCELLED)) continue;
         *h->e = lane->error;
-        h->e->column = h->batch + i;
+        h->e->column = h->ask.first + h->batch + i;
     }
     if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
     if (h->e->status < 0) return h->e->status;
@@ -17965,7 +18017,7 @@ static int32_t hdi_heat_load_some(hdi_heat_call *h) {
     int32_t i;
     for (i = 0; i < n; i++) {
         const size_t before = (size_t)(h->batch + i) * (size_t)h->rows.n * (size_t)h->lap->n_active;
-        if (hdi_heat_load(h, h->batch + i, h->heat->lane + i) < 0) break;
+        if (hdi_heat_load(h, h->ask.first + h->batch + i, h->heat->lane + i) < 0) break;
         h->heat->lane[i].rows = h->rows;
         if (!h->rows.n) continue;
         h->heat->lane[i].rows.sum += before;
@@ -17978,7 +18030,8 @@ static int32_t hdi_heat_load_some(hdi_heat_call *h) {
 static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
     int32_t i;
     if (h->e->status < 0 || hdi_heat_collect(h, n) < 0) return h->e->status;
-    for (i = 0; i < n; i++) hdi_heat_store(h, h->batch + i, h->heat->lane + i);
+    for (i = 0; i < n && !(h->part && h->rep->error_local > h->most); i++)
+        hdi_heat_store(h, h->ask.first + h->batch + i, h->heat->lane + i);
     return h->e->status;
 }
 
@@ -18598,24 +18651,6 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
  * submatrices of L and B there are a pair of their own, which loses the heat that arrives at its edge. What
  * that makes is bounded by hdi_rim_bound; where it is too much, the ball grows. */
 
-/* A row, how far it is, the row among the first from which that is, and what lengths there are multiplied
- * by. */
-typedef struct hdi_reached { double way, unit; int32_t row, from; } hdi_reached;
-
-typedef struct hdi_local {
-    hd_heat heat;                /* a plan for the pair of the ball */
-    hd_laplacian *ball;          /* the pair: its vertex i is row[i] of the source; NULL: none yet */
-    int32_t *row;
-    hdi_rim rim;
-    hdi_reached *at;             /* [n] of [room]: rows within reach, in the order they were reached */
-    int32_t n;
-    int64_t room;
-    /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
-    int32_t *place;
-    double smallest, largest;    /* b_diag of the source in a version of it */
-    int64_t version;
-} hdi_local;
-
 /* Forgets the ball, but not the pair that was made of it. */
 static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
     int64_t p;
@@ -18850,6 +18885,7 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
         l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
         if (!l) return NULL;
         l->heat.ctx = heat->ctx;
+        l->source = lap;
         l->version = -1;
         l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
         if (!l->place) return hdi_local_free(heat), (hdi_local *)NULL;
@@ -18947,22 +18983,6 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
     return hdi_local_grow(l, lap, edges * edge, (poles ? 1 : reach) * hdi_local_hops(lap), most, ctx, h->e);
 }
 
-/* The source of item q in terms of vertices of the ball. id, weight: room for it. */
-static hdi_terms hdi_local_source(const hdi_heat_call *h, const hdi_local *l, int32_t q, int32_t *id,
-                                  double *weight) {
-    const hdi_terms c = hdi_heat_source(h, q);
-    hdi_terms to = {0, 0, id, c.weight ? weight : NULL};
-    int32_t i;
-    for (i = 0; i < c.n; i++) {
-        const int32_t row = h->heat->source->row[hdi_terms_at(&c, i)];
-        if (row < 0) continue;
-        id[to.n] = l->place[row] - 1;
-        weight[to.n++] = hdi_terms_weight(&c, i);
-    }
-    to.one = id[0];
-    return to;
-}
-
 /* Where only the means of whole components are left, answers are those at the first such time. */
 static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times) {
     int32_t i;
@@ -18971,41 +18991,30 @@ static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times)
         times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
 }
 
-/* The answers to item q on the ball, ld apart: at the time under way, or for each of the caller's times. */
-static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double *U, size_t ld,
-                                 hd_report *rep) {
-    const int32_t *v = h->heat->source->vertex;
+/* Answers item q on the ball, and stores the answers if they leave out no more than `most`. */
+static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, double most, hd_report *rep) {
     /* a time at which nothing moves: zero has no logarithm */
     const double still = hdi_min(1, hdi_quotient(HDI_STILL, l->heat.lambda_max));
     hdi_heat_call in;
-    hdi_terms c;
-    double *field, *times;
-    int32_t i, *id;
+    double *times;
+    int32_t i;
     if (hdi_heat_begin(&in, &l->heat, h->ask.query, rep, h->e) < 0) return hdi_heat_end(&in);
-    field = HDI_TAKE(&in.s, double, l->n);
-    id = HDI_TAKE(&in.s, int32_t, l->n);
     times = HDI_TAKE(&in.s, double, h->n_times);
     if (in.e->status < 0) return hdi_heat_end(&in);
+    in.part = l;
     in.rim = &l->rim;
+    in.most = most;
     in.rate = h->rate;
     in.ask = h->ask;
+    in.ask.first = q;
     in.ask.k = 1;
-    in.ask.list = NULL;
-    in.ask.sparse = NULL;
-    in.ask.F = h->ask.F ? field : NULL;
-    in.ask.U = U;
-    in.ask.ldf = in.ask.ldu = ld;
-    in.ask.n_times = h->time_column ? h->ask.n_times : 1;
-    in.ask.t += h->time_column ? 0 : h->now;
+    in.now = h->now;
     in.times = times;
     in.n_times = h->n_times;
     in.time_column = h->time_column;
     for (i = 0; i < h->n_times; i++)
         times[i] = in.t =
-            hdi_max(still, hdi_heat_scaled(&l->heat, in.ask.t[h->time_column ? h->time_column[i] : 0]));
-    for (i = 0; i < l->n && h->ask.F; i++) field[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)v[l->row[i]]];
-    if (!h->ask.F) c = hdi_local_source(h, l, q, id, field);
-    in.ask.terms = h->ask.F ? NULL : &c;
+            hdi_max(still, hdi_heat_scaled(&l->heat, h->ask.t[h->time_column ? h->time_column[i] : h->now]));
     in.solver = h->solver;
     in.method = in.solver ? HD_METHOD_KRYLOV : HD_METHOD_DIRECT;
     in.m = hdi_heat_analysis(&in);
@@ -19019,65 +19028,6 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     return hdi_heat_end(&in);
 }
 
-/* The errors of values of which the largest is `most`. */
-static hdi_parts hdi_local_parts(const hd_report *rep, double most) {
-    hdi_parts off;
-    off.local = hdi_bound_times(most, rep->error_local);
-    off.rational = hdi_bound_times(most, rep->error_rational);
-    off.solver = hdi_bound_times(most, rep->error_solver);
-    off.rounding = hdi_bound_times(most, rep->error_rounding);
-    return off;
-}
-
-/* The entries of item q at the time under way, from its answer on the ball. */
-static void hdi_local_entries(const hdi_heat_call *h, const hdi_local *l, int32_t q, const double *u,
-                              const hd_report *rep) {
-    const hdi_entry_list *list = h->ask.list;
-    hdi_parts *how = &list->ledger[h->now].evidence;
-    double *values = list->values + list->n * h->now, most = 0;
-    int64_t p;
-    int32_t i;
-    for (i = 0; i < l->n; i++) most = hdi_max(most, fabs(u[i]));
-    for (p = list->begin[q]; p < list->begin[q + 1]; p++) {
-        const int32_t v = list->rows[list->order[p].id], row = h->heat->source->row[v];
-        double *value = values + list->order[p].id;
-        *value = row >= 0 && l->place[row] > 0 ? u[l->place[row] - 1] : 0;
-        if (row == HD_ROW_INERT && h->ask.query == HDI_QUERY_OPERATOR)
-            *value = (uint64_t)v == list->order[p].key;
-        hdi_ledger_note(list->ledger + h->now, *value, hdi_local_parts(rep, most));
-    }
-    how->rational = hdi_max(how->rational, rep->evidence_rational);
-    how->local = hdi_max(how->local, rep->evidence_local);
-    how->solver = hdi_max(how->solver, rep->evidence_solver);
-    how->rounding = hdi_max(how->rounding, rep->evidence_rounding);
-}
-
-/* The answer of item q at the time under way into the column or the row of the output. u: on the ball, with
- * room for what vertices without mass keep. order: the ball by vertices, work. */
-static void hdi_local_store(hdi_heat_call *h, const hdi_local *l, int32_t q, double *u, hdi_pair *order) {
-    const hd_laplacian *lap = h->heat->source;
-    const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)h->now;
-    double *out = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
-    int32_t i, n = l->n;
-    hdi_terms c;
-    for (i = 0; i < lap->n && out; i++)
-        if (!h->ask.F || h->rate || lap->row[i] != HD_ROW_INERT) out[i] = 0;
-        else out[i] = h->ask.F[h->ask.ldf * (size_t)q + (size_t)i];
-    if (out && !h->ask.F) hdi_heat_store_inert(h, q, out);
-    for (i = 0; i < n && out; i++) out[lap->vertex[l->row[i]]] = u[i];
-    if (!h->ask.sparse) return;
-    c = hdi_heat_source(h, q);
-    for (i = 0; i < n; i++) order[i].key = (uint64_t)lap->vertex[l->row[i]];
-    for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++) {
-        if (lap->row[hdi_terms_at(&c, i)] != HD_ROW_INERT) continue;
-        order[n].key = (uint64_t)hdi_terms_at(&c, i);
-        u[n++] = hdi_terms_weight(&c, i);
-    }
-    for (i = 0; i < n; i++) order[i].id = i;
-    hdi_sort_pairs(order, n);
-    (void)hdi_sparse_row(h->ask.sparse, (int64_t)column, n, order, u, h->heat->ctx, h->e);
-}
-
 /* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
  * then, as errors fall like exp(-R^2/4t). */
 #define HDI_LOCAL_SHARE 100
@@ -19089,26 +19039,36 @@ static double hdi_local_more(double reach, int32_t tries, double excess) {
     return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * log(hdi_min(excess, 1e16))) + 0.03;
 }
 
-/* Finds a ball for item q that is large enough, and the answers on it, in U: ld apart, room as in
- * hdi_local_solve. */
-static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, double **U, size_t *ld,
-                                  hd_report *rep) {
+/* What item q leaves of a source without rows. */
+static hd_status hdi_local_plain(hdi_heat_call *h, int32_t q) {
+    hdi_lane lane;
+    int32_t m;
+    memset(&lane, 0, sizeof lane);
+    lane.skip = 1;
+    for (m = 0; m < h->n_times && h->e->status >= 0; m++) {
+        h->now = h->time_column ? h->time_column[m] : h->now;
+        hdi_heat_store(h, q, &lane);
+    }
+    if (!h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
+    return h->e->status;
+}
+
+/* Answers item q on a ball that is large enough. */
+static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_report *rep) {
     hd_heat *heat = h->heat;
     const int automatic = heat->opts.method == HD_METHOD_AUTO;
     const int32_t most = automatic ? heat->source->n_active / 2 : INT32_MAX;
-    const size_t columns = h->time_column ? (size_t)h->ask.n_times : 1;
     const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
     const hd_rational *set = heat->opts.rational;
     double reach = hdi_local_reach(set, wanted), tol = wanted;
     int32_t tries;
     for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
-        hdi_free(heat->ctx, *U);
-        *U = NULL;
+        const int last = !automatic && tries + 1 == HDI_LOCAL_TRIES;
         if (hdi_local_find(h, l, q, reach, most) < 0 || l->n > most) break;
-        *ld = (size_t)l->n + (h->ask.F ? 0 : (size_t)hdi_heat_source(h, q).n);
-        *U = HDI_NEW(heat->ctx, double, *ld * columns, h->e);
-        if (!*U || l->n == 0 || hdi_local_plan(heat, l, h->e) < 0) return h->e->status;
-        if (hdi_local_solve(h, l, q, *U, *ld, rep) < 0 || rep->error_local <= wanted) return h->e->status;
+        if (l->n == 0) return hdi_local_plain(h, q);
+        if (hdi_local_plan(heat, l, h->e) < 0 ||
+            hdi_local_solve(h, l, q, last ? HUGE_VAL : wanted, rep) < 0 || rep->error_local <= wanted)
+            return h->e->status;
         tol *= wanted / hdi_min(rep->error_local, 1e16 * wanted);
         reach = set ? hdi_max(hdi_local_reach(set, tol), (tries > 1 ? 1.5 : 1.05) * reach)
                     : hdi_local_more(reach, tries, rep->error_local / wanted);
@@ -19121,25 +19081,9 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, dou
 
 /* Item q and its report. */
 static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
-    hd_context *ctx = h->heat->ctx;
-    hdi_pair *order = NULL;
-    double *U = NULL;
     hd_report rep;
-    int32_t m;
-    size_t ld = 0;
     memset(&rep, 0, sizeof rep);
-    if (hdi_local_answer(h, l, q, &U, &ld, &rep) >= 0 && h->ask.sparse)
-        order = HDI_NEW(ctx, hdi_pair, ld, h->e);
-    for (m = 0; m < h->n_times && h->e->status >= 0; m++) {
-        double *u = U + ld * (size_t)(h->time_column ? h->time_column[m] : 0);
-        h->now = h->time_column ? h->time_column[m] : h->now;
-        if (h->ask.list) hdi_local_entries(h, l, q, u, &rep);
-        else hdi_local_store(h, l, q, u, order);
-    }
-    hdi_free(ctx, order);
-    hdi_free(ctx, U);
-    if (l->n == 0 && !h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);   /* exact */
-    if (l->n == 0 || h->e->status < 0) return;
+    if (hdi_local_answer(h, l, q, &rep) < 0 || l->n == 0) return;
     if (h->ask.list)
         rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
     rep.method = HD_METHOD_LOCAL;
@@ -20116,26 +20060,36 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
     return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
 }
 
-/* The rows that are there, as a matrix. */
+/* The rows that are there, as a matrix with ascending columns. */
 static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t n, hd_csr *out,
                                   hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
+    hdi_pair *order;
     hd_csr a;
-    int64_t r, p;
+    int64_t r, p, at = 0, longest = 0;
     if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
+    for (r = 0; r < rows; r++) longest = hdi_most(longest, from->end[r] - from->begin[r]);
+    order = HDI_TAKE(&s, hdi_pair, longest);
     a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
     for (r = 0; r < rows && e->status >= 0; r++) {
-        a.row_ptr[r + 1] = a.row_ptr[r];
-        for (p = from->begin[r]; p < from->end[r]; p++) {
-            a.col[a.row_ptr[r + 1]] = from->col[p];
-            a.val[a.row_ptr[r + 1]++] = from->val[p];
+        const int64_t count = from->end[r] - from->begin[r];
+        for (p = 0; p < count; p++) {
+            order[p].key = (uint64_t)from->col[from->begin[r] + p];
+            order[p].id = from->begin[r] + p;
         }
+        hdi_sort_pairs(order, count);
+        for (p = 0; p < count; p++) {
+            a.col[at] = (int32_t)order[p].key;
+            a.val[at++] = from->val[order[p].id];
+        }
+        a.row_ptr[r + 1] = at;
     }
-    if (e->status >= 0) {
-        hdi_csr_free(ctx, out);
-        *out = a;
-        s.n = 0;
-    }
+    if (e->status < 0) return hdi_scope_end(&s);
+    hdi_csr_free(ctx, out);
+    *out = a;
+    hdi_keep(&s, a.row_ptr);
+    hdi_keep(&s, a.col);
+    hdi_keep(&s, a.val);
     return hdi_scope_end(&s);
 }
 
@@ -20163,7 +20117,6 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
     }
     hdi_free(heat->ctx, to.begin);
     hdi_free(heat->ctx, to.val);
-    hdi_free(heat->ctx, to.dense);
     return hdi_heat_end(&h);
 }
 
@@ -21902,8 +21855,14 @@ static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *se
 
 /* An error in parts that are in the ratio of those of the report. */
 static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
-    const hdi_parts whole = hdi_local_parts(rep, 1), rounding = {0, 0, error, 0};
-    const double sum = hdi_parts_sum(&whole);
+    const hdi_parts rounding = {0, 0, error, 0};
+    hdi_parts whole;
+    double sum;
+    whole.rational = rep->error_rational;
+    whole.solver = rep->error_solver;
+    whole.rounding = rep->error_rounding;
+    whole.local = rep->error_local;
+    sum = hdi_parts_sum(&whole);
     return sum > 0 && hdi_finite(sum) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
@@ -24480,21 +24439,21 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
                                      hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu};
+    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
     return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                           const double *F, size_t ldf, double *U, size_t ldu,
                                           hd_report *report, hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu};
+    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
     return hdi_fields_run(heat, &ask, 1, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_ADJOINT, k, n_times, t, G, NULL, NULL, NULL, U, ldg, ldu};
+    const hdi_request ask = {HDI_QUERY_ADJOINT, k, n_times, t, G, NULL, NULL, NULL, U, ldg, ldu, 0};
     return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
