@@ -12762,7 +12762,9 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * hdi_heat_note say how each is known; and a lane has them in the norm of B from its engine. With poles
  * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_most
  * (solver), hdi_rim_bound (local) and hdi_krylov_rounding, from the residuals that hdi_krylov_probe measures;
- * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by. */
+ * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by; rhs_off and f_off of
+ * hdi_heat_load are what the right-hand side is. A residual counts as in hdi_residual_seen, with the rounding
+ * of hdi_noise_weights, in the norm of D^-1; hdi_ratio_root leads from there to that of B^-1. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding, local; } hdi_parts;
@@ -14857,7 +14859,7 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
     const int32_t m = z->done[r];
     double most[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
-    lane->rounding = HD_EVIDENCE_MEASURED;
+    lane->rounding = HD_EVIDENCE_ESTIMATED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
         hdi_ritz_most(z->ritz + r, t / z->g, most);
