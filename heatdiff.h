@@ -16909,7 +16909,8 @@ struct hd_heat {
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero */
+    /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero;
+     * negative: not known yet */
     double drift;
     int64_t version;             /* of the Laplacian from which all this was made */
     hdi_sum *sums;               /* [n_sums] work */
@@ -16955,9 +16956,11 @@ static double hdi_heat_drift(const hd_laplacian *lap, hdi_sum *sum) {
     int64_t p;
     int32_t i;
     memset(sum, 0, (size_t)lap->n_components * sizeof *sum);
-    for (i = 0; i < lap->n_active && lap->conserves; i++)
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            hdi_sum_add(sum + lap->component[i], lap->L.val[p]);
+    for (i = 0; i < lap->n_active && lap->conserves; i++) {
+        hdi_sum row = {0, 0};
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) hdi_sum_add(&row, lap->L.val[p]);
+        hdi_sum_add(sum + lap->component[i], row.high + row.low);
+    }
     for (i = 0; i < lap->n_components && lap->conserves; i++)
         drift = hdi_max(drift, fabs(sum[i].high + sum[i].low) / lap->component_mass[i]);
     return drift;
@@ -17183,11 +17186,14 @@ static double hdi_row_local(const hd_laplacian *lap, int32_t i) {
     return hdi_max(0, hdi_row_diagonal(lap, i)) / mass;
 }
 
-/* The mean of all rows, of fourth roots, which thin triangles do not spoil. */
+/* The mean of so many rows or all, of fourth roots, which thin triangles do not spoil. */
+enum { HDI_STEPS_ROWS = 1 << 16 };
+
 static double hdi_steps_local(const hd_laplacian *lap) {
+    const int32_t step = 1 + lap->n_active / HDI_STEPS_ROWS, n = (lap->n_active + step - 1) / step;
     double sum = 0;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) sum += sqrt(sqrt(hdi_row_local(lap, i))) / lap->n_active;
+    for (i = 0; i < n; i++) sum += sqrt(sqrt(hdi_row_local(lap, i * step))) / n;
     return sum * sum * sum * sum;
 }
 
@@ -17344,9 +17350,9 @@ static void hdi_heat_measure_pair(hd_heat *heat) {
     const hd_laplacian *lap = heat->source;
     heat->version = lap->version;
     heat->scale = hdi_pair_scale(lap);
-    heat->lambda_max = hdi_lambda_bound(lap) / heat->scale;
+    heat->lambda_max = (lap->b_ratio > 0 ? lap->lambda_max : hdi_lambda_bound(lap)) / heat->scale;
     heat->local = hdi_steps_local(lap) / heat->scale;
-    heat->drift = hdi_heat_drift(lap, heat->sums) / heat->scale;
+    heat->drift = -1;
 }
 
 /* The copy of the pair in elimination order with new values; factors are made again. */
@@ -17790,8 +17796,10 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
  * systems. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
+    hd_heat *heat = h->heat;
     h->n_lanes = hdi_low32(h->ask.k, most);
-    return hdi_heat_make_lanes(h->heat, h->n_lanes, room, h->e);
+    if (heat->drift < 0) heat->drift = hdi_heat_drift(heat->source, heat->sums) / heat->scale;
+    return hdi_heat_make_lanes(heat, h->n_lanes, room, h->e);
 }
 
 /* ---- the pole set of a call ---- */
@@ -18853,6 +18861,7 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
         hdi_local_fill(l, lap, out, rim, d + 3 * n, *rows + n, fill);
         hdi_local_range(out, &least, &most);
         rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
+        out->lambda_max = hdi_lambda_known(out);
     }
     if (hdi_scope_end(&s) >= 0) return out;
     hdi_laplacian_free(out, ctx);
@@ -19881,7 +19890,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
     const hd_rational *set = h->heat->opts.rational;
     const int filter = set && set->t > 0;
-    const double bound = filter ? hdi_lambda_known(h->heat->source) : 0;
+    const double bound = filter ? h->heat->source->lambda_max : 0;
     int32_t q;
     if (n_times == 0 && filter) {
         n_times = 1;
