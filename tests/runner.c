@@ -3,7 +3,7 @@
        cc -std=c99 tests/runner.c -I. -lm -o runner && ./runner
 
    runner [FILTER...]   groups whose name contains one of the filters; none: all
-   runner --shard N     groups of part N of 5, which take about as long as each other; the fifth is memory that fails
+   runner --shard N     groups of part N of 6; the sixth is memory that fails
    runner --list        names of the groups
    runner --traps       the first invalid operation, division by zero or overflow ends the run with SIGFPE (glibc, x86)
    runner --tmp DIR     an existing directory for files that tests write; default: one made here and removed at the end
@@ -203,25 +203,28 @@ static void test_tmp_remove(void) {
 #include "test_local.h"
 #endif
 
-/* shard: groups that ctest runs together; those of memory that fails are one of its own */
-enum { TEST_MEMORY = 5 };
+/* shard: groups that ctest runs together. Two of them CI runs under sanitizers alone: groups whose cases are all the same there, and memory
+ * that fails. TEST_BRIEF: without groups that take long under sanitizers, and whose code the others run as well. */
+enum { TEST_SAME = 5, TEST_MEMORY = 6 };
 typedef struct test_group { const char *name; void (*run)(void); int shard; } test_group;
 
 static const test_group test_groups[] = {
-    {"platform", test_platform, 1}, {"rational", test_rational, 1}, {"krylov", test_krylov, 1}, {"base", test_base, 1},
-    {"sparse", test_sparse, 1}, {"meshio", test_meshio, 4},
+    {"platform", test_platform, TEST_SAME}, {"rational", test_rational, TEST_SAME}, {"krylov", test_krylov, TEST_SAME},
+    {"base", test_base, TEST_SAME}, {"sparse", test_sparse, TEST_SAME}, {"meshio", test_meshio, TEST_SAME},
 #ifndef TEST_CORE
-    {"filters", test_filters, 1}, {"heat", test_heat, 1}, {"lengths", test_lengths, 1}, {"view", test_view, 1},
-    {"cases", test_cases, 1}, {"moving", test_moving, 1}, {"doors", test_doors, 1}, {"shared", test_shared, 1},
-    {"engines", test_engines, 2}, {"local", test_local, 2}, {"estimate", test_estimate, 2},
-    {"points", test_points, 3}, {"deep", test_deep, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
-    {"large_t", test_large_t, 3},
-    {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4}, {"order", test_order, 4}, {"threads", test_threads, 4},
-    {"bounds", test_bounds, 4},
-    {"adjoints", test_adjoints, 4}, {"signatures", test_signatures, 4}, {"picture", test_picture, 4},
-    {"everywhere", test_operators_all, 4}, {"sources", test_sources, 4}, {"intrinsic", test_intrinsic, 4},
-    {"operators", test_operators, 4}, {"borders", test_borders, 4}, {"polygon", test_polygon, 4}, {"assembly", test_assembly, 4},
+    {"lengths", test_lengths, TEST_SAME}, {"view", test_view, TEST_SAME}, {"moving", test_moving, TEST_SAME},
+    {"doors", test_doors, TEST_SAME}, {"shared", test_shared, TEST_SAME}, {"order", test_order, TEST_SAME},
+    {"picture", test_picture, TEST_SAME}, {"intrinsic", test_intrinsic, TEST_SAME}, {"operators", test_operators, TEST_SAME},
+    {"polygon", test_polygon, TEST_SAME}, {"assembly", test_assembly, TEST_SAME},
+    {"heat", test_heat, 1}, {"cases", test_cases, 1}, {"adjoints", test_adjoints, 1}, {"everywhere", test_operators_all, 1},
+    {"borders", test_borders, 1}, {"threads", test_threads, 1}, {"local", test_local, 2},
     {"failures", test_failures, TEST_MEMORY}, {"robust", test_robust, TEST_MEMORY},
+#ifndef TEST_BRIEF
+    {"bounds", test_bounds, 1}, {"signatures", test_signatures, 1}, {"filters", test_filters, 1}, {"engines", test_engines, 2},
+    {"estimate", test_estimate, 2}, {"points", test_points, 3}, {"diagonal", test_diagonal, 3}, {"spectrum", test_spectrum, 3},
+    {"large_t", test_large_t, 3}, {"deep", test_deep, 4}, {"geodesic", test_geodesic_all, 4}, {"ldl", test_ldl, 4},
+    {"sources", test_sources, 4},
+#endif
 #endif
 };
 

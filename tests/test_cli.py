@@ -1442,7 +1442,7 @@ kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} 
 distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {classical|weighted} --laplacian {fem|voronoi-cot} \
     --method local :: distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {1} --laplacian {2} --degree 14 :: 2e-9
 distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --threads 1 --memory-limit 120M \
-    {--method local|} :: distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --degree 14 :: 2e-9
+    :: distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --degree 14 :: 2e-9
 sample --count 6 torus-80-50.obj --t 1h2 --source {7|7,3000|9:0.2,0.3} --definition {classical|weighted} --method local :: \
     sample --count 6 torus-80-50.obj --t 1h2 --source {1} --definition {2} --degree 14 :: 1e-9
 hks torus-40-24.obj --t 10h2 --laplacian {fem|voronoi-cot} --method direct {--poles kernel --degree 12\
@@ -1877,7 +1877,7 @@ kernel torus-80-50.obj --source 1,2 --method krylov --t {30h2 :: times#1|3h2,30h
 kernel torus-80-50.obj --source 1,2 --method local --t {1h2 :: times#1|2h2,0,1h2 :: times#3} touched>500 touched<2000 \
     error_rational=0 error_local>0 error_bound<2e-7
 kernel torus-150-100.obj --source 7 --t 1h2 :: method=local touched<1875 error_local>0 error_bound<2e-7
-{hks|hks --kernel operator|trace} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 80M {|--method local} :: method=local \
+{hks|hks --kernel operator --method local|trace} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 80M :: method=local \
     touched>500 touched<14000 patches>1 error_local>0 error_relative<1e-6
 {distance --source 7|sample --count 3 --method local} torus-150-100.obj --t 1h2 --threads 1 --memory-limit 120M :: method=local touched>500 touched<15000 patches>1 error_local>0 error_relative<1e-7
 {distance --source 7,3000|sample --count 3} torus-80-50.obj --t 1h2 --method local :: touched=4000 patches=1 degree=14
@@ -2216,7 +2216,7 @@ def default_interrupts():
 class Terminals(Case):
     """The progress bar, and Ctrl-C."""
     MANY = ",".join(map(str, range(40)))
-    SLOW = "kernel torus-500-300.obj --source %s --solver cocg --precond jacobi --tol 1e-12 --t 100000h2,200000h2" % MANY
+    SLOW = "kernel torus-300-200.obj --source %s --solver cocg --precond jacobi --tol 1e-12 --t 100000h2,200000h2" % MANY
 
     def on_a_terminal(self, line, word=None, signals=0, output=subprocess.DEVNULL):
         """The exit status, and what goes to standard error when that is a terminal. When word is seen, interrupts are sent."""
@@ -2268,14 +2268,14 @@ class Terminals(Case):
 
     def test_when_the_bar_says_what_runs(self):
         """The signal comes while it computes, however busy the machine is; a second one does not wait for the end."""
-        mesh = " torus-500-300.obj -o new.npy"
+        mesh = " torus-300-200.obj -o new.npy"
         file("keep.npy", "precious")
         for word, line in ((b"% solve", self.SLOW + " -o new.npy"), (b"% ", self.SLOW + " -o keep.npy"),
                            (b"% solve", "kernel --source %s --t 1h2,10000h2 --method krylov" % self.MANY + mesh),
                            (b"% ", "kernel --source %s --t auto:20" % self.MANY + mesh),
                            (b"% ", "sample --count 1000 --definition commute" + mesh),
                            (b"% factor", "kernel --source %s --t auto:20 --method direct" % self.MANY + mesh),
-                           (b"% ", "geodesic --source " + self.MANY + mesh), (b"% ", "spectrum -k 300" + mesh),
+                           (b"% ", "geodesic -o new.npy torus-500-300.obj --source " + self.MANY), (b"% ", "spectrum -k 300" + mesh),
                            (b"% ", "hks --t auto:20 --dry-run" + mesh)):
             for signals in (1, 2):
                 words(line)

@@ -183,9 +183,10 @@ def program_text(path):
     return text
 
 
-def look_up(page, text, cc):
+def look_up(page, text, cc, implementation):
     built = {"heatdiff": "tools/heatdiff.c"}            # programs, by the source they come from
     cmake, compiled = read("CMakeLists.txt"), set()
+    alone = re.findall(r"hd_program_alone\(\w+ (\S+)", cmake)      # these use what is private in the implementation
     for name in re.findall(r"hd_program(?:_alone)?\((\w+) ", cmake):
         built.setdefault(name, "tools/%s.c" % name)
     built.update(runner="tests/runner.c", internals="tests/internals.c", fuzz="tests/fuzz/fuzz.c")
@@ -207,6 +208,8 @@ def look_up(page, text, cc):
                 if words[0] in ("cc", "gcc") and sources[0] not in compiled:
                     compiled.add(sources[0])
                     flags = ["-std=gnu99", "-I.", "-fsyntax-only"] + [w for w in words if w.startswith("-D")]
+                    if implementation and sources[0] not in alone and not sources[0].endswith("_shared.c"):
+                        flags += ["-DHEATDIFF_IMPLEMENTED", "-DHDI_KERNELS_READ"]
                     good = subprocess.run([cc] + flags + sources[:1], cwd=TOP, stderr=subprocess.PIPE).returncode == 0
                     check(good, page, "%s does not compile" % sources[0])
             elif words and words[0] == "cmake":
@@ -346,7 +349,7 @@ def main():
         os.mkdir(folder)
         for name in ("examples", "tools", "tests", "heatdiff.h"):
             os.symlink(os.path.join(TOP, name), os.path.join(folder, name))
-        reader = threading.Thread(target=lambda: [look_up(page, text[page], cc) for page in PAGES])
+        reader = threading.Thread(target=lambda: [look_up(page, text[page], cc, implementation) for page in PAGES])
         reader.start()
         for page in RUN:
             run_commands(page, text[page], work, folder, timed, "--pictures" in sys.argv)
