@@ -2,7 +2,7 @@
 
        cc -std=c99 tests/runner.c -I. -lm -o runner && ./runner
 
-   runner [FILTER...]   groups whose name contains one of the filters; none: all
+   runner [FILTER...]   the group of that name, else groups whose name contains one of the filters; none: all
    runner --shard N     groups of part N of 6; the sixth is memory that fails
    runner --list        names of the groups
    runner --traps       the first invalid operation, division by zero or overflow ends the run with SIGFPE (glibc, x86)
@@ -230,6 +230,14 @@ static const test_group test_groups[] = {
 
 enum { TEST_GROUPS = sizeof test_groups / sizeof *test_groups };
 
+/* `order` is a group, and borders is not meant. */
+static int test_is_meant(const test_group *group, const char *filter) {
+    int k;
+    for (k = 0; k < TEST_GROUPS; k++)
+        if (strcmp(test_groups[k].name, filter) == 0) return group == test_groups + k;
+    return strstr(group->name, filter) != NULL;
+}
+
 static void test_run(const test_group *group) {
     const int64_t passed = test_passed, failed = test_failed;
     const clock_t start = clock();
@@ -278,7 +286,7 @@ int main(int argc, char **argv) {
     }
     for (k = 0; k < TEST_GROUPS; k++) {
         int wanted = filters == 0;
-        for (i = 1; i < argc; i++) wanted |= argv[i] && strstr(test_groups[k].name, argv[i]) != NULL;
+        for (i = 1; i < argc; i++) wanted |= argv[i] && test_is_meant(test_groups + k, argv[i]);
         if (!wanted || (shard && test_groups[k].shard != shard)) continue;
         test_run(test_groups + k);
         ran++;
