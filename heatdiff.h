@@ -13647,7 +13647,8 @@ static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const
             const hd_c64 *w = lane[r].rows.weight + (int64_t)row * lane[r].rows.stride;
             double *HDI_RESTRICT to = lane[r].rows.sum + row * n;
             hdi_elim_coef(m, i, w, coef);
-            for (j = 0; j < n; j++)
+            for (q = 0; q < apart && coef[q] == 0;) q++;
+            for (j = q < apart ? 0 : n; j < n; j++)
                 for (q = 0; q < apart; q++) to[j] += coef[q] * from[stride * j + q];
         }
     }
@@ -17323,7 +17324,8 @@ typedef struct hdi_heat_call {
     const hdi_local *part;       /* that part, where the request is in terms of the whole */
     double most;                 /* its answers are stored if they leave out no more than this */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
-    double left_out;             /* and what the part leaves out of k_t, scaled */
+    const double *left;          /* what the part leaves out of each column of k_t, scaled; NULL: nothing */
+    double left_out;             /* of the one under way */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
     hdi_column_parts *off;       /* [k][n_off] by residuals and the sets that begin with set */
     int32_t n_off;
@@ -18926,7 +18928,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
         (void)hdi_heat_make(own, ball, e);
     }
     if (e->status >= 0)
-        (void)hdi_heat_take_sets(own, heat->opts.rational ? 1 : 0, heat->opts.rational, e);
+        (void)hdi_heat_take_sets(own, heat->n_sets, heat->sets, e);
     hdi_laplacian_free(l->ball, heat->ctx);
     l->ball = ball;
     l->row = row;
@@ -18955,7 +18957,7 @@ static double hdi_local_hops(const hd_laplacian *lap) {
 /* The radius in sqrt(t) beyond which the solutions of a set's poles, which fall like exp(-Re sqrt(theta)
  * d/sqrt(t)), are below tol times the largest value of their sum. Without a set 1: see hdi_local_find. */
 static double hdi_local_reach(const hd_rational *set, double tol) {
-    double reach = set ? 0.1 : 1;
+    double reach = set ? 0 : 1;
     int32_t p;
     for (p = 0; set && p < set->n_poles; p++) {
         const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
@@ -20780,9 +20782,11 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     if (h->e->status < 0 || hdi_probe_run(h, x, 1, &d, &probe, &s) < 0) return hdi_scope_end(&s);
     for (q = 0; q < x->count; q++) {
         hd_report *rep = one ? one + column[q] : h->rep;
-        const hdi_ledger ledger = hdi_inverse_ledger(h, x->set + q, 1);
+        hdi_ledger ledger;
         double seen;
         hdi_parts off;
+        if (h->left) h->left_out = h->left[column[q]];
+        ledger = hdi_inverse_ledger(h, x->set + q, 1);
         if (rep != h->rep && !rep->reason) *rep = *h->rep;
         hdi_diagonal_read(h->heat, x, q, &d);
         seen = hdi_diagonal_seen(h, x, q, &d, &probe);
@@ -21021,8 +21025,7 @@ static hd_status hdi_diagonals_run(hdi_heat_call *h, const hdi_diagonals *query)
 /* Checks that there is selected inversion, and that it is allowed. */
 static hd_status hdi_diagonal_check(hdi_heat_call *h) {
     if (!HDI_HAS_DIAGONAL) return HDI_LEFT_OUT(h->e, DIAGONAL, "selected inversion");
-    if (h->heat->opts.method == HD_METHOD_LOCAL && h->heat->source->b_ratio > 0 && !h->heat->opts.rational)
-        return HD_OK;
+    if (h->heat->opts.method == HD_METHOD_LOCAL && h->heat->source->b_ratio > 0) return HD_OK;
     return hdi_direct_only(h);
 }
 
@@ -21045,7 +21048,9 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * the margin adds to an entry k_t(x,x) at most
  *   int_0^t r(s) int_0^(t-s) r(s') ds' ds,   r(s)^2 = 1/b_ratio sum ((L + B d/ds) k_s e_x)_q^2 / B_qq,
  * q being the rows of the rim (Duhamel's formula, once for each way). The r(s) of all x of a core are
- * measured at once: by symmetry they are what k_s makes of random functions on the rim. */
+ * measured at once: by symmetry they are what k_s makes of random functions on the rim. For the caller's sets
+ * the poles' own residuals there are measured like that: with y_p = (t L + theta_p B) (..)^-1 e_x on the rim
+ * the error of entry (x,x) is at most sum_p |a_p| |y_p|^2 / dist_p in the norm of B^-1. */
 
 /* Random functions, in all and at once; times where they are taken, over t; these and an integral. */
 enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
@@ -21061,9 +21066,8 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
-/* Bytes of a patch for each number of its real factor, as measured: with four complex factors, with eight. */
-#define HDI_PATCH_BYTES 170
-#define HDI_PATCH_EXACT 255
+/* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
+#define HDI_PATCH_BYTES 85
 
 typedef struct hdi_patches {
     const hdi_diagonals *to;
@@ -21073,7 +21077,8 @@ typedef struct hdi_patches {
     int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
-    double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
+    double t;                    /* the last time, the caller's */
+    double tol, reach;           /* margins are so many times as wide as usual; for own sets, that of tol */
 } hdi_patches;
 
 /* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
@@ -21110,15 +21115,17 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
     hdi_heat_call *h = x->to->task.h;
     const hd_laplacian *lap = h->heat->source;
     double edge = 0;
+    const int own = h->heat->n_sets > 0;
+    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * (own ? 1 : x->reach) * hdi_local_hops(lap);
     int32_t i;
     hdi_local_clear(x->local, lap);
     for (i = begin; i < end; i++) {
-        edge += hdi_min(hdi_local_edge(lap, x->row[i]), sqrt(x->t)) / (end - begin);
+        edge += hdi_min(hdi_local_edge(lap, x->row[i]), root) / (end - begin);
         if (hdi_local_add(x->local, lap, x->row[i], h->heat->ctx, h->e) < 0) return h->e->status;
     }
-    edge *= HDI_PATCH_REACH * hdi_local_edges(lap, sqrt(x->t) / edge);
-    return hdi_local_grow(x->local, lap, x->reach * edge, HDI_PATCH_HOPS * x->reach * hdi_local_hops(lap),
-                          most, h->heat->ctx, h->e);
+    edge = own ? hdi_local_edges(lap, 0) * (edge + x->reach * root / 4)
+               : hdi_local_edges(lap, root / edge) * x->reach * edge;
+    return hdi_local_grow(x->local, lap, HDI_PATCH_REACH * edge, hops, most, h->heat->ctx, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
@@ -21155,17 +21162,19 @@ static double hdi_patch_cut(hdi_patches *x) {
 }
 
 /* Random functions on the rim from number q on, as functionals C [n] each that k_s applies to: with c = L w
- * and c' = B w on the patch's side, k_s c + d/ds k_s c' = k_s (c - L B^-1 c'). work [5 n] */
-static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, double *work, hd_error *e) {
+ * and c' = B w on the patch's side, k_s c + d/ds k_s c' = k_s (c - L v), v = B^-1 c'. V: these. work [4 n] */
+static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, double *V, double *work,
+                                  hd_error *e) {
     const hd_laplacian *lap = l->ball;
     const hdi_rim *rim = &l->rim;
     const int64_t n = lap->n;
-    double *u = work, *v = u + n, *rest = v + n;
+    double *u = work, *rest = u + n;
     const int32_t end = q + HDI_PATCH_BLOCK;
     uint64_t seed;
     int32_t i;
     memset(C, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *C);
-    for (; q < end && e->status >= 0; q++, C += n) {
+    memset(V, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *V);
+    for (; q < end && e->status >= 0; q++, C += n, V += n) {
         memset(u, 0, (size_t)n * sizeof *u);
         for (i = 0; i < rim->n_edges; i++) {
             double w;
@@ -21174,20 +21183,23 @@ static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, doub
             C[rim->from[i]] += rim->l[i] * w;
             u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
         }
-        if (!rim->b || hdi_mass_solve(lap, HDI_PATCH_STOP, u, v, rest, e) < 0) continue;
-        hdi_pair_apply(lap, 1, 0, v, u);
+        if (!rim->b || hdi_mass_solve(lap, HDI_PATCH_STOP, u, V, rest, e) < 0) continue;
+        hdi_pair_apply(lap, 1, 0, V, u);
         for (i = 0; i < n; i++) C[i] -= u[i];
     }
     return e->status;
 }
 
 /* Weights with which the set's poles make r(s) at time m, or after the times its integral until half of t, by
- * least squares. work: hdi_residues_room of the points, and three times as many numbers. */
+ * least squares; of the caller's sets y of one pole, real and imaginary parts in turn. work:
+ * hdi_residues_room of the points, and three times as many numbers. */
 static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, hd_c64 *w) {
     enum { N = HDI_RESOLVENT_POINTS };
     double *x = work, *u = x + N, *f = u + N;
     hd_rational fit = *set;
     int32_t i;
+    for (i = 0; i < set->n_poles; i++) w[i] = hdi_c(i == m / 2 && m % 2 == 0, i == m / 2 && m % 2 ? -1 : 0);
+    if (set->kind == HD_POLES_OWN) return;
     for (i = 0; i < N; i++) {
         const double s = (i + 0.5) / (double)N;
         x[i] = -2 * s / ((1 - s) * (1 - s));
@@ -21198,52 +21210,69 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
-/* r(s) at the times, and last its integral until half of t, over t: for the x among the first `count`
- * vertices where it is largest, from the poles that the inversion takes. */
-static hd_status hdi_patch_rates(const hdi_patches *x, hdi_heat_call *in, int32_t count, double *r) {
-    enum { ROWS = HDI_PATCH_ROWS };
-    const hdi_local *l = x->local;
+/* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
+ * patch's vertices: with rows [n] in elimination order by hdi_patch_weights. */
+static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t, hd_rational *set,
+                                 hdi_scope *s) {
     const int32_t n = l->n;
-    hdi_scope s = hdi_scope_begin(in->heat->ctx, in->e);
     const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
-    double *C = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n), *work = HDI_TAKE(&s, double, room);
-    double *U = HDI_TAKE(&s, double, HDI_PATCH_BLOCK * (uint64_t)n * ROWS);
-    double *sum = HDI_TAKE_ZERO(&s, double, ROWS * (uint64_t)n);
-    int32_t *id = HDI_TAKE(&s, int32_t, n), i, j, q;
-    hd_c64 weight[ROWS][HD_MAX_POLES];
+    double *C = HDI_TAKE(s, double, 2 * HDI_PATCH_BLOCK * (uint64_t)n), *V = C ? C + HDI_PATCH_BLOCK * n : C;
+    double *work = HDI_TAKE(s, double, room), *sum = NULL, by;
+    int32_t *id = HDI_TAKE(s, int32_t, n), i, j, q, own;
+    hd_c64 *weight = HDI_TAKE(s, hd_c64, 2 * HD_MAX_POLES * HD_MAX_POLES);
     hdi_terms terms[HDI_PATCH_BLOCK];
-    hd_rational set;
     hdi_columns c;
-    in->t = hdi_heat_scaled(in->heat, x->t);
-    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, &set) < 0)
-        return hdi_scope_end(&s);
+    in->t = hdi_heat_scaled(in->heat, t);
+    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
+    own = set->kind == HD_POLES_OWN;
+    by = in->heat->scale * (own ? t : 1);
+    memset(&c, 0, sizeof c);
+    c.rows.n = own ? 2 * set->n_poles : HDI_PATCH_ROWS;
+    c.rows.sum = HDI_TAKE(s, double, HDI_PATCH_BLOCK * (uint64_t)n * (uint64_t)hdi_high32(c.rows.n, 4));
+    sum = HDI_TAKE_ZERO(s, double, (uint64_t)n * (uint64_t)c.rows.n);
+    if (in->e->status < 0) return NULL;
     for (i = 0; i < n; i++) id[i] = i;
     for (q = 0; q < HDI_PATCH_BLOCK; q++) {
         const hdi_terms one = {n, 0, id, C + (int64_t)q * n};
         terms[q] = one;
     }
-    for (q = 0; q < ROWS; q++) hdi_patch_weights(&set, q, work, weight[q]);
-    memset(&c, 0, sizeof c);
+    for (q = 0; q < c.rows.n; q++) hdi_patch_weights(set, q, work, weight + q * HD_MAX_POLES);
     c.kernel = HD_KERNEL_SYMMETRIC;
-    c.set = &set;
+    c.set = set;
     c.k = HDI_PATCH_BLOCK;
     c.terms = terms;
-    c.rows.n = ROWS;
     c.rows.stride = HD_MAX_POLES;
-    c.rows.weight = *weight;
-    c.rows.sum = U;
+    c.rows.weight = weight;
     for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
-        if (hdi_patch_probes(l, q, C, U, in->e) < 0 || hdi_direct_columns(in, &c) < 0) break;
-        for (j = 0; j < HDI_PATCH_BLOCK * (int32_t)ROWS; j++)
+        if (hdi_patch_probes(l, q, C, V, c.rows.sum, in->e) < 0 || hdi_direct_columns(in, &c) < 0)
+            return NULL;
+        for (j = 0; j < HDI_PATCH_BLOCK * c.rows.n; j++) {
+            const double *u = c.rows.sum + (int64_t)j * n, *v = V + (int64_t)(j / c.rows.n) * n;
+            const int32_t row = j % c.rows.n;
             for (i = 0; i < n; i++) {
-                const double u = in->heat->scale * U[(int64_t)j * n + i];
-                sum[(int64_t)(j % ROWS) * n + i] += u * (u / (double)HDI_PATCH_PROBES);
+                const double y = by * u[i] + (own && row % 2 == 0 ? v[in->heat->elim.lap->vertex[i]] : 0);
+                sum[(int64_t)row * n + i] += y * (y / (double)HDI_PATCH_PROBES);
             }
+        }
     }
-    for (q = 0; q < ROWS; q++)
-        for (i = 0, r[q] = 0; i < n; i++)
-            if (in->heat->elim.lap->vertex[i] < count) r[q] = hdi_max(r[q], sqrt(sum[(int64_t)q * n + i]));
-    return hdi_scope_end(&s);
+    return sum;
+}
+
+/* The largest of a row of squares among the first `count` vertices, or for a set of the caller's of all its
+ * poles' as they count. */
+static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
+                             const hd_rational *set) {
+    const hd_laplacian *lap = in->heat->elim.lap;
+    double most = 0;
+    int32_t i, p;
+    for (i = 0; i < lap->n; i++) {
+        double all = set ? 0 : sum[i];
+        for (p = 0; set && p < set->n_poles; p++)
+            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) *
+                   (sum[(2 * (int64_t)p) * lap->n + i] + sum[(2 * (int64_t)p + 1) * lap->n + i]);
+        if (lap->vertex[i] < count) most = hdi_max(most, all);
+    }
+    return most;
 }
 
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
@@ -21273,22 +21302,42 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
-/* What the patch, of which the first `core` vertices count, leaves out of entries of k_t at most. Those of
- * K_t = k_t B take neighbours besides. */
-static double hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t core) {
+/* How many columns the diagonals of a query have. */
+static int32_t hdi_diagonals_count(const hdi_heat_call *h) {
+    return h->heat->n_sets > 1 ? h->heat->n_sets : h->ask.n_times;
+}
+
+/* What the patch, of which the first `core` vertices count, leaves out of entries of each column of k_t at
+ * most, in off. Those of K_t = k_t B take neighbours besides. */
+static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t core, double *off) {
     const hd_laplacian *lap = x->local->ball;
-    double r[HDI_PATCH_ROWS];
-    int32_t count = core, i;
+    const hd_heat *heat = in->heat;
+    const int own = heat->n_sets > 0;
+    const int32_t columns = hdi_diagonals_count(in), times = own ? in->ask.n_times : 1;
+    int32_t count = core, i, q;
     int64_t p;
-    if (x->local->rim.n == 0) return 0;
+    memset(off, 0, (size_t)columns * sizeof *off);
     for (i = 0; i < core && lap->B; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             count = hdi_high32(count, lap->L.col[p] + 1);
-    if (hdi_patch_rates(x, in, count, r) < 0) return HUGE_VAL;
-    return hdi_bound_of(HDI_PATCH_SAFETY * x->t * x->t * hdi_patch_integral(r) / lap->b_ratio);
+    for (q = 0; q < times && x->local->rim.n > 0 && in->e->status >= 0; q++) {
+        hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
+        hd_rational set;
+        const double *sum = hdi_patch_squares(x->local, in, own ? in->ask.t[q] : x->t, &set, &s);
+        double r[HDI_PATCH_ROWS], most = 0;
+        for (i = 0; sum && i < HDI_PATCH_ROWS && !own; i++)
+            r[i] = sqrt(hdi_patch_most(in, sum + (int64_t)i * lap->n, count, NULL));
+        if (sum && !own) most = x->t * x->t * hdi_patch_integral(r);
+        for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
+            if (own) most = hdi_patch_most(in, sum, count, times > 1 ? &set : heat->sets + i);
+            off[i] = hdi_bound_of(HDI_PATCH_SAFETY * most / lap->b_ratio) / heat->scale;
+        }
+        (void)hdi_scope_end(&s);
+    }
+    return in->e->status;
 }
 
-/* Gives the core's values to the caller, D [n_times][n] and traces with bounds. first: of all pieces. */
+/* Gives the core's values to the caller, D [columns][n] and traces with bounds. first: of all pieces. */
 static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, const double *Z,
                            const double *bound, int first) {
     const hdi_diagonals *to = x->to;
@@ -21296,7 +21345,7 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
     const int32_t *v = h->heat->source->vertex;
     const size_t n = (size_t)x->local->n;
     int32_t i, q;
-    for (q = 0; q < h->ask.n_times; q++) {
+    for (q = 0; q < hdi_diagonals_count(h); q++) {
         for (i = 0; i < core && D; i++)
             to->D[(size_t)q * to->ldd + (size_t)v[x->local->row[i]]] = D[(size_t)q * n + (size_t)i];
         if (to->Z) to->Z[q] = Z[q] + (first ? 0 : to->Z[q]);
@@ -21310,26 +21359,44 @@ static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_
     hd_heat *own = &x->local->heat;
     hdi_diagonals to = *x->to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const uint64_t n = (uint64_t)h->ask.n_times, values = to.D ? n * (uint64_t)x->local->n : 0;
+    const uint64_t n = (uint64_t)hdi_diagonals_count(h), values = to.D ? n * (uint64_t)x->local->n : 0;
+    double *left;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
     to.ldd = (size_t)x->local->n;
-    to.D = HDI_TAKE(&s, double, values + 2 * n);
+    to.D = HDI_TAKE(&s, double, values + 3 * n);
     if (h->e->status < 0) return hdi_scope_end(&s);
     to.bound = to.D + values;
     to.Z = x->to->Z ? to.bound + n : NULL;
+    left = to.bound + 2 * n;
     to.D = x->to->D ? to.D : NULL;
     if (hdi_kernel_begin(&in, own, HD_KERNEL_SYMMETRIC, rep, NULL) >= 0 &&
         hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
         in.core = core;
         in.method = HD_METHOD_DIRECT;
         in.diagonal = 1;
-        in.left_out = hdi_patch_off(x, &in, core) / own->scale;
-        if (in.e->status >= 0) (void)hdi_diagonals_run(&in, &to);
+        in.left = left;
+        if (hdi_patch_off(x, &in, core, left) >= 0) (void)hdi_diagonals_run(&in, &to);
     }
     if (hdi_heat_end(&in) < 0) *h->e = rep->error;
     else if (rep->error_local <= wanted) hdi_patch_tell(x, core, to.D, to.Z, to.bound, x->done == 0);
     return hdi_scope_end(&s);
+}
+
+/* How wide a margin is to be so that tol is left out, relative to the largest value. */
+static double hdi_patch_reach(const hdi_patches *x) {
+    const hd_heat *heat = x->to->task.h->heat;
+    double reach = heat->n_sets > 0 ? 0 : 1;
+    int32_t q;
+    for (q = 0; q < heat->n_sets; q++) reach = hdi_max(reach, hdi_local_reach(heat->sets + q, x->tol));
+    return reach;
+}
+
+/* A wider margin where what is left out is so much too large. */
+static void hdi_patch_widen(hdi_patches *x, int32_t tries, double excess) {
+    x->tol /= hdi_min(excess, 1e16);
+    x->reach = x->to->task.h->heat->n_sets == 0 ? hdi_local_more(x->reach, tries, excess)
+               : hdi_max(hdi_patch_reach(x), (tries > 1 ? 1.5 : 1.05) * x->reach);
 }
 
 /* A piece. Its margin grows until as little is left out as of columns. */
@@ -21342,7 +21409,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
-        x->reach = hdi_local_more(x->reach, tries - 1, rep.error_local / wanted);
+        hdi_patch_widen(x, tries - 1, rep.error_local / wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21356,18 +21423,20 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
 static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active;
+    hd_rational set;
     int32_t q;
     memset(x, 0, sizeof *x);
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
-    x->each = hdi_exacting(h->heat) ? HDI_PATCH_EXACT : HDI_PATCH_BYTES;
-    x->reach = 1;
+    x->tol = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    x->reach = hdi_patch_reach(x);
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
     x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
     x->mark = HDI_TAKE_ZERO(&h->s, int32_t, n);
-    if (h->e->status < 0) return h->e->status;
+    if (h->e->status < 0 || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return h->e->status;
+    x->each = HDI_PATCH_BYTES * (1 + hdi_set_packs(&set));
     x->queue = x->row + x->n;
     for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
     return HD_OK;
@@ -21411,7 +21480,7 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
     (void)hdi_patches_range(x, 0, x->n);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
-    for (q = 0; q < h->ask.n_times && to->D && h->e->status >= 0; q++)
+    for (q = 0; q < hdi_diagonals_count(h) && to->D && h->e->status >= 0; q++)
         for (v = 0; v < lap->n; v++)
             if (lap->row[v] < 0)
                 to->D[(size_t)q * to->ldd + (size_t)v] = to->mass == 1 && lap->row[v] == HD_ROW_INERT;
@@ -21421,7 +21490,7 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
 /* Can patches serve? */
 static HDI_INLINE int hdi_patches_can(const hd_heat *heat) {
     const int32_t n = heat->source->n_active, asked = heat->opts.method == HD_METHOD_LOCAL;
-    return HDI_HAS_LOCAL && heat->source->b_ratio > 0 && !heat->opts.rational && heat->n_sets == 0 &&
+    return HDI_HAS_LOCAL && heat->source->b_ratio > 0 &&
            (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
 }
 
@@ -21456,7 +21525,7 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
 static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
                                   const int32_t *j, double *values) {
     const hd_laplacian *lap = h->heat->source;
-    int may = n >= HDI_PATCH_LEAST;
+    int may = n >= HDI_PATCH_LEAST && h->heat->n_sets < 2;
     int32_t *rows, q, v;
     hdi_diagonals to;
     hdi_patches x;
@@ -22079,7 +22148,7 @@ static hd_status hdi_distance_answer(hdi_distance_query *to) {
     hdi_heat_call *h = to->task.h;
     hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;
-    const int may = to->kind->time > 0 && hdi_patches_can(heat);
+    const int may = to->kind->time > 0 && !heat->opts.rational && hdi_patches_can(heat);
     const hd_heat_opts opts = heat->opts;
     to->reason = asked ? "asked for" : HDI_PATCHES_PAY;
     if (!may || (!asked && !hdi_distance_pays(h, to->kind))) {
@@ -22477,7 +22546,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    if (kind->time > 0 && (pairs ? !hdi_heat_filtered(heat) : hdi_patches_can(heat))) return HD_OK;
+    if (kind->time > 0 && (pairs ? !hdi_heat_filtered(heat) : !heat->opts.rational && hdi_patches_can(heat)))
+        return HD_OK;
     return hdi_direct_only(h);
 }
 
@@ -22760,7 +22830,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hd_rational set;
     double pieces;
     int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
-    if (!hdi_patches_can(heat) || factor == 0) return h->e->status;
+    if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);

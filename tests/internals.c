@@ -1214,7 +1214,8 @@ static void int_patches(void) {
             CHECK(hdi_kernel_begin(&in, &x.local->heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0);
             in.method = HD_METHOD_DIRECT;
             in.diagonal = 1;
-            off = hdi_patch_off(&x, &in, cut[2] - cut[1]);
+            CHECK(hdi_times_check(&in, 2, t, 1) >= 0 && hdi_patch_off(&x, &in, cut[2] - cut[1], sure) >= 0);
+            off = sure[0] * x.local->heat.scale;
             CHECK_MSG(off > 1 / lap->component_mass[0], "%s: %g of %g", specs[k], off * lap->component_mass[0], reaches[r]);
             CHECK(hdi_heat_end(&in) >= 0);
             hdi_local_free(heat);

@@ -546,13 +546,16 @@ static void loc_refused(void) {
     const double t = lap->h * lap->h;
     double *u = KIT_NEW(double, lap->n);
     const int32_t first = 0;
-    const hd_rational set = {0};
+    hd_rational set = {0};
     hd_error e;
     memset(u, 0, (size_t)lap->n * sizeof *u);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_BIHARMONIC, 0, NULL, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
     CHECK(hd_heat_apply(heat, 1, &t, 1, u, 0, u, 0, NULL, &e) == HD_OK && dense_max_abs(u, lap->n) == 0);
+    CHECK(hd_heat_set_rational(heat, 1, &set, &e) == HD_OK);      /* a set without poles, and with the term of B^-1 alone */
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, NULL, NULL, &e) == HD_OK && dense_max_abs(u, lap->n) == 0);
+    set.a0 = 2;
     CHECK(hd_heat_set_rational(heat, 1, &set, &e) == HD_OK);
-    CHECK(hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, 1, &t, u, 0, NULL, NULL, NULL, &e) == HD_ERR_ARGUMENT);
+    CHECK(hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, 1, &t, u, 0, NULL, NULL, NULL, &e) == HD_OK && u[0] == 2 && dense_max_abs(u, lap->n) == 2);
     CHECK(hd_heat_distance(heat, HD_DISTANCE_CLASSICAL, 1, &t, VERTICES(1, &first), u, 0, NULL, &e) == HD_ERR_ARGUMENT);
 }
 
@@ -661,6 +664,114 @@ static void loc_filters(const char *spec, double unit) {
     kit_release(mark);
 }
 
+/* Diagonals and traces of all sets of a plan by patches, which a byte limit makes small, and of all of the mesh. Their difference is
+ * what patches leave out, and rounding: no more than is reported. tight: how far above the errors bounds are, or 0 for rounding. */
+static double loc_filter_diagonal(const hd_laplacian *lap, hd_kernel kernel, int32_t n_sets, const hd_rational *sets, int32_t n_times,
+                                  const double *t, const char *what) {
+    const int32_t mark = kit_mark(), n = lap->n, columns = n_sets > 1 ? n_sets : n_times ? n_times : 1;
+    double *D = KIT_NEW(double, columns * (int64_t)n), *W = KIT_NEW(double, columns * (int64_t)n), tight = 0;
+    double Z[8], Y[8], bound[8], sure[8], value;
+    const int32_t own = kit_mark();
+    hd_heat *heat = kit_heat(lap, "method=direct");
+    hd_context *ctx = lap->context;
+    const uint64_t before = ctx->bytes_in_use;
+    hd_status status = HD_ERR_MEMORY_LIMIT;
+    hd_report rep, all;
+    uint64_t need;
+    hd_error e;
+    int32_t i, q;
+    ctx->bytes_peak = before;
+    CHECK(hd_heat_set_rational(heat, n_sets, sets, NULL) == HD_OK);
+    CHECK_MSG(hd_heat_diagonal(heat, kernel, n_times, t, W, 0, Y, sure, &all, &e) >= 0, "%s: %s", what, e.text);
+    kit_release(own);
+    need = (ctx->bytes_peak - before) / 10;
+    heat = kit_heat(lap, "method=local");
+    CHECK(hd_heat_set_rational(heat, n_sets, sets, NULL) == HD_OK);
+    for (q = 5; q < 20 && status == HD_ERR_MEMORY_LIMIT; q += 2) {
+        ctx->byte_limit = ctx->bytes_in_use + (uint64_t)q * need;
+        status = hd_heat_diagonal(heat, kernel, n_times, t, D, 0, Z, bound, &rep, &e);
+    }
+    ctx->byte_limit = 0;
+    if (CHECK_MSG(status >= 0, "%s: %s", what, e.text)) {
+        const double size = dense_max_abs(W, columns * (int64_t)n), rest = all.error_rounding + rep.error_rounding;
+        CHECK_MSG(rep.method == HD_METHOD_LOCAL && rep.poles == HD_POLES_OWN && rep.n_touched > 0 && rep.n_patches > 1, "%s", what);
+        CHECK_MSG(rep.evidence_local == HD_EVIDENCE_MEASURED && rep.error_bound >= rep.error_local && rep.error_local < 1.1e-7,
+                  "%s: bound %g, %d of %d rows", what, rep.error_local, (int)rep.n_touched, (int)n);
+        for (q = 0; q < columns; q++) {
+            const double top = dense_max_abs(W + q * (int64_t)n, n), off = dense_max_diff(D + q * (int64_t)n, W + q * (int64_t)n, n);
+            CHECK_MSG(off <= (rep.error_local + rest) * size * 1.000001, "%s, %d: error %g, bound %g", what, (int)q, off / size, rep.error_local);
+            if (off > 1e-12 * top) tight = fmax(tight, rep.error_local / (off / size));
+            for (i = 0; i < n; i++) {
+                const double rest_at = fabs(D[q * (int64_t)n + i] - W[q * (int64_t)n + i]), at = fabs(W[q * (int64_t)n + i]);
+                if (!CHECK_MSG(!(rest_at > (rep.error_relative + all.error_relative) * at), "%s, %d, vertex %d", what, (int)q, (int)i)) break;
+            }
+            CHECK_MSG(fabs(Z[q] - Y[q]) <= bound[q] + sure[q], "%s, %d: trace %g of %g", what, (int)q, Z[q] - Y[q], bound[q]);
+        }
+        if (n_sets == 1 && n > 768) {            /* entries are of the same */
+            int32_t *v = KIT_NEW(int32_t, n / 3);
+            double *X = KIT_NEW(double, (n / 3) * (int64_t)columns);
+            for (i = 0; i < n / 3; i++) v[i] = 3 * i;
+            CHECK(hd_heat_entries(heat, kernel, n_times, t, n / 3, v, v, X, &rep, &e) >= 0 && rep.method == HD_METHOD_LOCAL && rep.n_patches > 0);
+            for (i = 0; i < n / 3; i++) {
+                value = W[3 * i];
+                if (!CHECK_MSG(!(fabs(X[i] - value) > (rep.error_relative + all.error_relative) * fabs(value)), "%s: entry %d", what, (int)i)) break;
+            }
+        }
+    }
+    kit_release(mark);
+    return tight;
+}
+
+/* Filters alone and together, and a set of one's own at two times. */
+static void loc_filter_patches(const hd_laplacian *lap, const char *spec, double unit) {
+    enum { FILTERS = 5 };
+    const int32_t mark = kit_mark();
+    const double t = unit * lap->h * lap->h, ts[2] = {t, t / 3};
+    double square = t / 4, tight[FILTERS + 1], up;
+    hd_filter list[FILTERS] = {{0, HD_FILTER_WAVE, 0, 0.5, NULL, NULL, 1e-7, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_WAVE, 0, 0.5, NULL, NULL, 1e-7, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_MEXICAN_HAT, 0, 0, NULL, NULL, 1e-7, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_OWN, 0, 0, loc_square, NULL, 1e-6, 0, 0, 0, 0, 0},
+                               {0, HD_FILTER_OWN, 0, 0, loc_high, NULL, 1e-6, 0, 0, 0, 1, 0}};
+    hd_rational set[FILTERS];
+    int32_t q, kernel, n = 0, i;
+    hd_error e;
+    char what[96];
+    list[0].a = log(4 / t);
+    list[1].a = log(8 / t);
+    list[2].a = t;
+    list[3].user = list[4].user = (void *)&square;
+    for (q = 0; q <= FILTERS; q++) {
+        const int together = q == FILTERS;
+        kernel = q % 2;
+        snprintf(what, sizeof what, "%s, filter %d, kernel %d", spec, (int)q, (int)kernel);
+        CHECK_MSG(hd_rational_fit(set, together ? 3 : 1, together ? list : list + q, lap->lambda_max, NULL, &e) >= 0, "%s", e.text);
+        tight[n++] = loc_filter_diagonal(lap, (hd_kernel)kernel, together ? 3 : 1, set, 0, NULL, what);
+    }
+    CHECK(hd_rational_exp(set, HD_POLES_KERNEL, 10, NULL) == HD_OK);
+    (void)loc_filter_diagonal(lap, HD_KERNEL_SYMMETRIC, 1, set, 2, ts, spec);
+    for (q = 0; q < n; q++)
+        for (i = q; i > 0 && tight[i] < tight[i - 1]; i--) up = tight[i], tight[i] = tight[i - 1], tight[i - 1] = up;
+    for (q = 0; q < n && tight[q] == 0;) q++;
+    CHECK_MSG(n - q >= n / 3 && tight[(q + n) / 2] < 1e4, "%s: %d errors seen, a bound is %g times its error", spec, (int)(n - q),
+              q < n ? tight[(q + n) / 2] : 0);
+    kit_release(mark);
+}
+
+/* Two components, of which patches hold parts or all. */
+static void loc_filter_components(void) {
+    const shape *large = kit_shape("bumpy/4/1"), *small = kit_shape("flat/60/60/0.3");
+    const double offset[3] = {9, 9, 9};
+    const shape *s = kit_own(shape_disjoint(large, small, offset));
+    hd_laplacian_opts o = {0};
+    hd_laplacian *lap = NULL;
+    o.kind = HD_LAPLACIAN_VORONOI_COT;
+    o.context = &trial_serial;
+    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, NULL) == HD_OK);
+    lap = (hd_laplacian *)kit_keep(lap, kit_free_laplacian);
+    loc_filter_patches(lap, "two components", 0.1);
+}
+
 static void test_local(void) {
     static const struct { const char *spec; int32_t parts; } pairs[] = {
         {"bumpy/4/1 fem", 8}, {"bumpy/4/5 vor", 14}, {"cylinder/8/300 vor", 0}, {"grid/50/4 fem", 3}, {"flat/60/40/0.4 fem+held", 9},
@@ -694,5 +805,9 @@ static void test_local(void) {
     loc_refused();
     loc_filters("bumpy/5/1 vor", 1);
     if (!CASES_FEW) loc_filters("bumpy/5/1 fem", 0.5);
+    loc_filter_patches(kit_pair("flat/72/72/0.3 fem"), "flat/72/72/0.3 fem", 1);
+    if (!CASES_FEW) loc_filter_patches(kit_pair("bumpy/5/1 vor"), "bumpy/5/1 vor", 1);
+    if (!CASES_FEW) loc_filter_patches(kit_pair("inert/70/0 fem+held"), "inert/70/0 fem+held", 0.5);
+    loc_filter_components();
     loc_own_set();
 }
