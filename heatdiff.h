@@ -1039,8 +1039,8 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local: patches that fit the byte limit; half the memory takes up to twice as long. Auto takes
- *        patches where they cost less, or from 4096 rows on where nothing else fits
+ *        local, also of filters: patches that fit the byte limit; half the memory takes up to twice as
+ *        long. Auto takes patches where they cost less, or from 4096 rows on where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,

@@ -272,10 +272,11 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
         if (c.solver == 2) c.solver = HD_SOLVER_COCG;    /* no solver has this number */
         if (c.solver != HD_SOLVER_LANCZOS) c.precond = trial_below(seed, 5);
     }
-    if (c.method < HD_METHOD_KRYLOV && c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
+    if ((c.method < HD_METHOD_KRYLOV || (c.method == HD_METHOD_LOCAL && c.query == QUERY_DIAGONAL)) &&
+        c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
         static const int which[] = {10, 3, 6};
-        c.poles = among(seed, which, 3);
-        if (trial_chance(seed, c.poles ? 0.6 : 0.1)) c.degree = 2 + trial_below(seed, 13);
+        c.poles = c.method == HD_METHOD_LOCAL ? 0 : among(seed, which, 3);
+        if (c.method != HD_METHOD_LOCAL && trial_chance(seed, c.poles ? 0.6 : 0.1)) c.degree = 2 + trial_below(seed, 13);
         if (c.query == QUERY_DERIVATIVE) c.poles = c.degree = 0;
         if (c.query != QUERY_DERIVATIVE && trial_chance(seed, 0.1)) {   /* sets of one's own have none */
             c.poles = 0;

@@ -1223,7 +1223,8 @@ static int check_method(const options *o)
     if (no_poles && (o->degree || o->poles))
         return fail(USAGE, "%s takes no --method %s, which has no use for it",
                     o->degree ? "--degree" : "--poles", name);
-    if (o->filter && (o->method == HD_METHOD_KRYLOV || (o->method == HD_METHOD_LOCAL && inverts)))
+    if (o->filter && (o->method == HD_METHOD_KRYLOV ||
+                      (o->method == HD_METHOD_LOCAL && inverts && !(o->command & CMD_DIAGONAL))))
         return fail(USAGE, "--filter takes no --method %s: its poles are made for it, and it needs them", name);
     if (o->filter && (o->degree || o->poles || o->solver == HD_SOLVER_LANCZOS))
         return fail(USAGE, "--filter takes no %s: its poles are made for it, and it needs them",
@@ -2703,7 +2704,8 @@ static void find_ways(run *r)
 /* Can a run go on patch by patch where factors of the whole mesh do not fit? */
 static int by_patches(const options *o)
 {
-    return (o->command & CMD_INVERTS) && !o->filter && !is_timeless(o) && o->method != HD_METHOD_LOCAL;
+    return (o->command & (o->filter ? CMD_DIAGONAL : CMD_INVERTS)) && !is_timeless(o) &&
+           o->method != HD_METHOD_LOCAL;
 }
 
 /* A run that does not fit the memory: what it needs, what is allowed, and what would fit. */
