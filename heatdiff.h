@@ -21077,8 +21077,8 @@ typedef struct hdi_patches {
     int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
-    double t;                    /* the last time, the caller's */
-    double tol, reach;           /* margins are so many times as wide as usual; for own sets, that of tol */
+    double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
+    double wanted;               /* or for own sets so many sqrt(t); so much may be left out */
 } hdi_patches;
 
 /* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
@@ -21383,33 +21383,23 @@ static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_
     return hdi_scope_end(&s);
 }
 
-/* How wide a margin is to be so that tol is left out, relative to the largest value. */
-static double hdi_patch_reach(const hdi_patches *x) {
-    const hd_heat *heat = x->to->task.h->heat;
-    double reach = heat->n_sets > 0 ? 0 : 1;
-    int32_t q;
-    for (q = 0; q < heat->n_sets; q++) reach = hdi_max(reach, hdi_local_reach(heat->sets + q, x->tol));
-    return reach;
-}
-
 /* A wider margin where what is left out is so much too large. */
 static void hdi_patch_widen(hdi_patches *x, int32_t tries, double excess) {
-    x->tol /= hdi_min(excess, 1e16);
-    x->reach = x->to->task.h->heat->n_sets == 0 ? hdi_local_more(x->reach, tries, excess)
-               : hdi_max(hdi_patch_reach(x), (tries > 1 ? 1.5 : 1.05) * x->reach);
+    const double digits = log(hdi_min(excess, 1e16)) / hdi_max(1, -log(x->wanted));
+    if (x->to->task.h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries, excess);
+    else x->reach = (tries > 1 ? 1.5 : 1.05 + digits) * hdi_max(x->reach, 1e-3);
 }
 
 /* A piece. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
-    const double wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     hd_report rep;
     int32_t tries;
     for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
-        if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? wanted : HUGE_VAL, &rep) < 0)
+        if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
-        if (rep.error_local <= wanted || tries == HDI_LOCAL_TRIES) break;
-        hdi_patch_widen(x, tries - 1, rep.error_local / wanted);
+        if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
+        hdi_patch_widen(x, tries - 1, rep.error_local / x->wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21429,8 +21419,10 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
-    x->tol = HDI_LOCAL_SHARE * h->heat->opts.tol;
-    x->reach = hdi_patch_reach(x);
+    x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    x->reach = h->heat->n_sets > 0 ? 0 : 1;
+    for (q = 0; q < h->heat->n_sets; q++)
+        x->reach = hdi_max(x->reach, hdi_local_reach(h->heat->sets + q, x->wanted));
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
     x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
@@ -21534,19 +21526,18 @@ static hd_status hdi_pieces_run(const hdi_patches *x, hdi_piece *p, int32_t coun
 
 /* A round of pieces. */
 static hd_status hdi_patches_round(hdi_patches *x, hdi_piece *p, int32_t count, double *Z) {
-    const hdi_patches from = *x;
     hdi_heat_call *h = x->to->task.h;
     hd_context *ctx = h->heat->ctx;
     const int serial = hdi_is_serial(ctx) || ctx->allocator.alloc || ctx->allocation_limit;
     const int32_t share = serial ? 1 : ctx->parallel_for ? count : hdi_low32(count, hdi_context_width(ctx));
     const int beside = hdi_bytes_left(ctx) > share * HDI_PATCH_AMPLE * x->each * x->fill.stored && share > 1;
-    double reach = from.reach, tol = from.tol;
+    const double from = x->reach;
+    double reach = from;
     int32_t k;
     if (beside && hdi_pieces_run(x, p, count, share, Z) < 0) return h->e->status;
     for (k = 0; k < count && h->e->status >= 0; k++) {
         const hd_error *e = &p[k].rep.error;
-        x->reach = from.reach;
-        x->tol = from.tol;
+        x->reach = from;
         if (!beside || e->status == HD_ERR_MEMORY || hdi_over_limit(ctx, e)) {
             if (hdi_progress(ctx, "invert", (double)p[k].begin / x->n, h->e) >= 0)
                 (void)hdi_patch_alone(x, p[k].begin, p[k].end);
@@ -21554,15 +21545,12 @@ static hd_status hdi_patches_round(hdi_patches *x, hdi_piece *p, int32_t count, 
             *h->e = *e;
         } else {
             x->reach = p[k].x.reach;
-            x->tol = p[k].x.tol;
             hdi_report_merge(h->rep, &p[k].rep);
             hdi_patch_tell(x, 0, NULL, p[k].to.Z, p[k].to.bound, x->done++ == 0);
         }
         reach = hdi_max(reach, x->reach);
-        tol = hdi_min(tol, x->tol);
     }
     x->reach = reach;
-    x->tol = tol;
     return h->e->status;
 }
 
