@@ -1039,8 +1039,9 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local, also of filters: patches that fit the byte limit; half the memory takes up to twice as
- *        long. Auto takes patches where they cost less, or from 4096 rows on where nothing else fits
+ *        local, also of filters: patches that fit the byte limit, one for each thread where it is ample;
+ *        half the memory takes up to twice as long. Auto takes patches where they cost less, or from 4096
+ *        rows on where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -21481,11 +21482,12 @@ static void hdi_piece_task(void *arg, int64_t index, int32_t worker) {
     hdi_local_free(&p->heat);
 }
 
-/* Pieces side by side, `share` of them at once. Z: room for the traces of each, and bounds. */
-static hd_status hdi_pieces_run(const hdi_patches *x, hdi_piece *p, int32_t count, int32_t share, double *Z) {
+/* Pieces, `beside` of them at once. Z: room for the traces of each, and bounds. */
+static hd_status hdi_pieces_run(const hdi_patches *x, hdi_piece *p, int32_t count, int32_t beside,
+                                double *Z) {
     const hdi_heat_call *h = x->to->task.h;
     hd_context *ctx = h->heat->ctx;
-    const double left = ctx->byte_limit ? hdi_bytes_left(ctx) / share : 0;
+    const double left = ctx->byte_limit ? hdi_bytes_left(ctx) / beside : 0;
     uint64_t most = 0;
     hdi_walk w;
     int32_t i;
@@ -21519,26 +21521,32 @@ static hd_status hdi_pieces_run(const hdi_patches *x, hdi_piece *p, int32_t coun
         most = (--p)->ctx.bytes_peak > most ? p->ctx.bytes_peak : most;
         ctx->allocations += p->ctx.allocations;
     }
-    most = ctx->bytes_in_use + most * (uint64_t)share;
+    most = ctx->bytes_in_use + most * (uint64_t)beside;
     ctx->bytes_peak = most > ctx->bytes_peak ? most : ctx->bytes_peak;
     return h->e->status;
+}
+
+/* How many pieces of a round of `count` are done at once. */
+static int32_t hdi_patches_beside(const hdi_patches *x, int32_t count) {
+    const hd_context *ctx = x->to->task.h->heat->ctx;
+    const int serial = hdi_is_serial(ctx) || ctx->allocator.alloc || ctx->allocation_limit;
+    const int32_t share = serial ? 1 : ctx->parallel_for ? count : hdi_low32(count, hdi_context_width(ctx));
+    return hdi_bytes_left(ctx) > share * HDI_PATCH_AMPLE * x->each * x->fill.stored ? share : 1;
 }
 
 /* A round of pieces. */
 static hd_status hdi_patches_round(hdi_patches *x, hdi_piece *p, int32_t count, double *Z) {
     hdi_heat_call *h = x->to->task.h;
     hd_context *ctx = h->heat->ctx;
-    const int serial = hdi_is_serial(ctx) || ctx->allocator.alloc || ctx->allocation_limit;
-    const int32_t share = serial ? 1 : ctx->parallel_for ? count : hdi_low32(count, hdi_context_width(ctx));
-    const int beside = hdi_bytes_left(ctx) > share * HDI_PATCH_AMPLE * x->each * x->fill.stored && share > 1;
+    const int32_t beside = hdi_patches_beside(x, count);
     const double from = x->reach;
     double reach = from;
     int32_t k;
-    if (beside && hdi_pieces_run(x, p, count, share, Z) < 0) return h->e->status;
+    if (beside > 1 && hdi_pieces_run(x, p, count, beside, Z) < 0) return h->e->status;
     for (k = 0; k < count && h->e->status >= 0; k++) {
         const hd_error *e = &p[k].rep.error;
         x->reach = from;
-        if (!beside || e->status == HD_ERR_MEMORY || hdi_over_limit(ctx, e)) {
+        if (beside == 1 || e->status == HD_ERR_MEMORY || hdi_over_limit(ctx, e)) {
             if (hdi_progress(ctx, "invert", (double)p[k].begin / x->n, h->e) >= 0)
                 (void)hdi_patch_alone(x, p[k].begin, p[k].end);
         } else if (e->status < 0) {
@@ -22935,6 +22943,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hd_rational set;
     double pieces;
     int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
+    int32_t beside;
     if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
@@ -22945,11 +22954,13 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     heat->opts.tol = tol;
     if (h->e->status < 0) return h->e->status;
     hdi_local_free(heat);
-    pieces = ceil((double)p.n / p.core) * h->n_times;
+    pieces = ceil((double)p.n / p.core);
+    beside = hdi_patches_beside(&p, (int32_t)hdi_min(pieces, HDI_PATCH_ROUND));
+    pieces *= h->n_times;
     hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
     c->seconds += pieces * 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n / HDI_RATE_PACK;
     c->possible = 1;
-    c->bytes = p.each * p.fill.stored + x->held;
+    c->bytes = beside * p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
     if (!asked && !pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
     x->to->method = HD_METHOD_LOCAL;

@@ -584,6 +584,19 @@ static void loc_own_set(void) {
     CHECK(memcmp(u, w, (size_t)lap->n * sizeof *u) == 0);
 }
 
+/* A set that is a0 alone: k is a0 B^-1, whose columns go on beyond a ball, and its bound says so. */
+static void loc_constant_set(void) {
+    const hd_laplacian *lap = kit_pair("flat/72/72/0.3 fem");
+    const double t = lap->h * lap->h;
+    double *u = KIT_NEW(double, lap->n), *w = KIT_NEW(double, lap->n);
+    hd_rational set = {0};
+    hd_report rep;
+    set.a0 = 3;
+    CHECK(hd_heat_column(filt_plan(lap, &set, "method=direct"), HD_KERNEL_SYMMETRIC, t, 9, w, NULL, NULL) >= 0);
+    CHECK(hd_heat_column(filt_plan(lap, &set, "method=local"), HD_KERNEL_SYMMETRIC, t, 9, u, &rep, NULL) >= 0 && rep.n_touched < lap->n / 2);
+    CHECK_MSG(rep.error_local > 0 && dense_max_diff(u, w, lap->n) <= (rep.error_bound + 1e-14) * dense_max_abs(w, lap->n), "%g", rep.error_local);
+}
+
 /* 1/(1 + a lambda)^2, and 1 less that. */
 static double loc_square(double lambda, void *user) {
     const double x = 1 + *(const double *)user * lambda;
@@ -810,4 +823,5 @@ static void test_local(void) {
     if (!CASES_FEW) loc_filter_patches(kit_pair("inert/70/0 fem+held"), "inert/70/0 fem+held", 0.5);
     loc_filter_components();
     loc_own_set();
+    loc_constant_set();
 }
