@@ -1039,9 +1039,8 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
  * Cost   for each t about three times the factors of all poles. By default many times share poles: three
  *        decades cost four or five times as much as one t. Filters: once, and 2 n flops for each set and
  *        pole. Memory for each pole: up to 48 n doubles, with a full B and traces 250 n.
- *        local, also of filters: patches that fit the byte limit, one for each thread where it is ample;
- *        half the memory takes up to twice as long. Auto takes patches where they cost less, or from 4096
- *        rows on where nothing else fits
+ *        local, also of filters: patches that fit the byte limit; half the memory takes up to twice as
+ *        long. Auto takes patches where they cost less, or from 4096 rows on where nothing else fits
  * Source see hd_ldl_inverse */
 HEATDIFF_API hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                         const double *t, double *D, size_t ldd, double *Z,
@@ -21074,7 +21073,7 @@ typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t stamp, done, round;  /* of marks; pieces that are answered; those of the next round */
+    int32_t stamp, done;         /* of marks; pieces that are answered */
     int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
@@ -21445,139 +21444,21 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
            hdi_patch_cut(x) < 0 && h->e->status >= 0;
 }
 
-/* A piece by itself; where it exceeds the byte limit it is halved. */
-static hd_status hdi_patch_alone(hdi_patches *x, int32_t begin, int32_t end) {
+/* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
+static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     int32_t middle;
-    if (hdi_patch_run(x, begin, end) >= 0 || !hdi_over_limit(h->heat->ctx, h->e) ||
-        end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
-    hdi_error_clear(h->e);
-    hdi_local_free(h->heat);
-    x->local = hdi_local_open(h->heat, h->e);
-    if (h->e->status < 0) return h->e->status;
-    middle = hdi_patch_halve(x, begin, end, 2);
-    return hdi_patch_alone(x, begin, middle) < 0 ? h->e->status : hdi_patch_alone(x, middle, end);
-}
-
-/* Pieces are done in rounds of 1, 2, 4 and so on, side by side if so many fit the byte limit amply: each by a
- * thread with a plan and a context of its own. What lacks memory then is done again alone. Pieces of a round
- * begin with the same margin, so results do not depend on how many threads there are. */
-enum { HDI_PATCH_ROUND = 8, HDI_PATCH_AMPLE = 3 };
-
-typedef struct hdi_piece {
-    int32_t begin, end;
-    hdi_patches x;               /* copies, to work with */
-    hdi_diagonals to;
-    hdi_heat_call h;
-    hd_heat heat;
-    hd_context ctx;
-    hd_report rep;
-} hdi_piece;
-
-static void hdi_piece_task(void *arg, int64_t index, int32_t worker) {
-    hdi_piece *p = (hdi_piece *)arg + index;
-    (void)worker;
-    p->x.local = hdi_local_open(&p->heat, p->h.e);
-    if (p->x.local) (void)hdi_patch_run(&p->x, p->begin, p->end);
-    hdi_local_free(&p->heat);
-}
-
-/* Pieces, `beside` of them at once. Z: room for the traces of each, and bounds. */
-static hd_status hdi_pieces_run(const hdi_patches *x, hdi_piece *p, int32_t count, int32_t beside,
-                                double *Z) {
-    const hdi_heat_call *h = x->to->task.h;
-    hd_context *ctx = h->heat->ctx;
-    const double left = ctx->byte_limit ? hdi_bytes_left(ctx) / beside : 0;
-    uint64_t most = 0;
-    hdi_walk w;
-    int32_t i;
-    hdi_walk_open(&w, ctx, count, NULL, hdi_piece_task, p);
-    w.stage = "invert";
-    w.from = (double)p->begin / x->n;
-    w.to = (double)p[count - 1].end / x->n;
-    w.e = h->e;
-    for (i = 0; i < count; i++, p++, Z += 2 * hdi_diagonals_count(h)) {
-        memset(&p->ctx, 0, sizeof p->ctx);
-        p->ctx.byte_limit = (uint64_t)left;
-        p->ctx.n_threads = 1;
-        p->ctx.simd = ctx->simd;
-        p->heat = *h->heat;
-        p->heat.ctx = &p->ctx;
-        p->heat.part = NULL;
-        (void)hdi_heat_begin(&p->h, &p->heat, h->ask.query, &p->rep, NULL);
-        p->h.ask = h->ask;
-        p->rep.reason = h->rep->reason;
-        p->to = *x->to;
-        p->to.task.h = &p->h;
-        p->to.Z = x->to->Z ? Z : NULL;
-        p->to.bound = Z + hdi_diagonals_count(h);
-        p->x = *x;
-        p->x.to = &p->to;
-        p->x.done = 0;
+    if (end - begin <= x->core) {
+        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0) return h->e->status;
+        if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
+        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+        hdi_error_clear(h->e);
+        hdi_local_free(h->heat);
+        x->local = hdi_local_open(h->heat, h->e);
+        if (h->e->status < 0) return h->e->status;
     }
-    hdi_release(&w, 0, count);
-    hdi_walk_run(&w);
-    for (i = 0; i < count; i++) {
-        most = (--p)->ctx.bytes_peak > most ? p->ctx.bytes_peak : most;
-        ctx->allocations += p->ctx.allocations;
-    }
-    most = ctx->bytes_in_use + most * (uint64_t)beside;
-    ctx->bytes_peak = most > ctx->bytes_peak ? most : ctx->bytes_peak;
-    return h->e->status;
-}
-
-/* How many pieces of a round of `count` are done at once. */
-static int32_t hdi_patches_beside(const hdi_patches *x, int32_t count) {
-    const hd_context *ctx = x->to->task.h->heat->ctx;
-    const int serial = hdi_is_serial(ctx) || ctx->allocator.alloc || ctx->allocation_limit;
-    const int32_t share = serial ? 1 : ctx->parallel_for ? count : hdi_low32(count, hdi_context_width(ctx));
-    return hdi_bytes_left(ctx) > share * HDI_PATCH_AMPLE * x->each * x->fill.stored ? share : 1;
-}
-
-/* A round of pieces. */
-static hd_status hdi_patches_round(hdi_patches *x, hdi_piece *p, int32_t count, double *Z) {
-    hdi_heat_call *h = x->to->task.h;
-    hd_context *ctx = h->heat->ctx;
-    const int32_t beside = hdi_patches_beside(x, count);
-    const double from = x->reach;
-    double reach = from;
-    int32_t k;
-    if (beside > 1 && hdi_pieces_run(x, p, count, beside, Z) < 0) return h->e->status;
-    for (k = 0; k < count && h->e->status >= 0; k++) {
-        const hd_error *e = &p[k].rep.error;
-        x->reach = from;
-        if (beside == 1 || e->status == HD_ERR_MEMORY || hdi_over_limit(ctx, e)) {
-            if (hdi_progress(ctx, "invert", (double)p[k].begin / x->n, h->e) >= 0)
-                (void)hdi_patch_alone(x, p[k].begin, p[k].end);
-        } else if (e->status < 0) {
-            *h->e = *e;
-        } else {
-            x->reach = p[k].x.reach;
-            hdi_report_merge(h->rep, &p[k].rep);
-            hdi_patch_tell(x, 0, NULL, p[k].to.Z, p[k].to.bound, x->done++ == 0);
-        }
-        reach = hdi_max(reach, x->reach);
-    }
-    x->reach = reach;
-    return h->e->status;
-}
-
-/* Rows from begin to end, in pieces, of which *count wait in p for a round. */
-static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, hdi_piece *p, int32_t *count,
-                                   double *Z) {
-    int32_t n;
-    if (end - begin > x->core) {
-        n = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
-        return hdi_patches_range(x, begin, n, p, count, Z) < 0 ? x->to->task.h->e->status
-               : hdi_patches_range(x, n, end, p, count, Z);
-    }
-    p[*count].begin = begin;
-    p[*count].end = end;
-    n = ++*count;
-    if (n < x->round && end < x->n) return HD_OK;
-    *count = 0;
-    x->round = hdi_low32(2 * x->round, HDI_PATCH_ROUND);
-    return hdi_patches_round(x, p, n, Z);
+    middle = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
+    return hdi_patches_range(x, begin, middle) < 0 ? h->e->status : hdi_patches_range(x, middle, end);
 }
 
 /* Diagonals and traces by patches. */
@@ -21585,12 +21466,10 @@ static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
     const hdi_diagonals *to = x->to;
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
-    double *Z = HDI_TAKE(&h->s, double, 2 * HDI_PATCH_ROUND * (uint64_t)hdi_diagonals_count(h));
-    hdi_piece *p = HDI_TAKE(&h->s, hdi_piece, HDI_PATCH_ROUND);
-    int32_t q, v, count = 0;
-    h->relative = x->round = 1;
+    int32_t q, v;
+    h->relative = 1;
     h->rep->reason = reason;
-    if (h->e->status >= 0) (void)hdi_patches_range(x, 0, x->n, p, &count, Z);
+    (void)hdi_patches_range(x, 0, x->n);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
     for (q = 0; q < hdi_diagonals_count(h) && to->D && h->e->status >= 0; q++)
@@ -22943,7 +22822,6 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hd_rational set;
     double pieces;
     int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
-    int32_t beside;
     if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
@@ -22954,13 +22832,11 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     heat->opts.tol = tol;
     if (h->e->status < 0) return h->e->status;
     hdi_local_free(heat);
-    pieces = ceil((double)p.n / p.core);
-    beside = hdi_patches_beside(&p, (int32_t)hdi_min(pieces, HDI_PATCH_ROUND));
-    pieces *= h->n_times;
+    pieces = ceil((double)p.n / p.core) * h->n_times;
     hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
     c->seconds += pieces * 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n / HDI_RATE_PACK;
     c->possible = 1;
-    c->bytes = beside * p.each * p.fill.stored + x->held;
+    c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
     if (!asked && !pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
     x->to->method = HD_METHOD_LOCAL;

@@ -1424,107 +1424,6 @@ static void int_few_tasks(void) {
 #endif
 }
 
-static void int_backwards(void *user, int64_t n, hd_task task, void *arg) {
-    (void)user;
-    while (n-- > 0) task(arg, n, (int32_t)(n % 3));
-}
-
-static hd_progress int_cancel(void *user, const char *stage, double done) {
-    int *left = (int *)user;
-    (void)stage, (void)done;
-    return (*left)-- > 0 ? HD_PROGRESS_CONTINUE : HD_PROGRESS_CANCEL;
-}
-
-/* Seven pieces side by side: heat at two times, or three filters. D, Z, bound [3][n], [3], [3] in turn. Returns the status. */
-static hd_status int_pieces(hd_context *ctx, const shape *s, int filters, double *D, hd_report *rep) {
-    hd_laplacian_opts o;
-    hd_heat_opts p;
-    hd_laplacian *lap = NULL;
-    hd_heat *heat = NULL;
-    double t[2], *Z = D + 3 * (int64_t)s->n;
-    hd_filter list[3];
-    hd_rational set[3];
-    hdi_diagonals to;
-    hdi_heat_call h;
-    hdi_patches x;
-    hd_error e;
-    int32_t q;
-    memset(&o, 0, sizeof o);
-    memset(&p, 0, sizeof p);
-    memset(list, 0, sizeof list);
-    memset(&to, 0, sizeof to);
-    o.context = p.context = ctx;
-    p.method = HD_METHOD_LOCAL;
-    p.tol = 1e-11;
-    CHECK(hd_laplacian_create(&lap, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
-    CHECK(hd_heat_create(&heat, lap, &p, &e) == HD_OK);
-    t[0] = lap->h * lap->h / 2;
-    t[1] = t[0] / 3;
-    for (q = 0; q < 3; q++) {
-        list[q].kind = HD_FILTER_HEAT;
-        list[q].a = t[0] / (q + 1);
-        list[q].tol = 1e-8;
-    }
-    if (filters) CHECK(hd_rational_fit(set, 3, list, lap->lambda_max, NULL, &e) == HD_OK && hd_heat_set_rational(heat, 3, set, &e) == HD_OK);
-    CHECK(hdi_kernel_begin(&h, heat, HD_KERNEL_OPERATOR, rep, &e) >= 0 && hdi_times_check(&h, filters ? 0 : 2, filters ? NULL : t, 1) >= 0);
-    to.task.h = &h;
-    to.mass = 1;
-    to.D = D;
-    to.ldd = (size_t)s->n;
-    to.Z = Z;
-    to.bound = Z + 3;
-    if (hdi_patches_open(&x, &to, 1) >= 0 && hdi_patch_cut(&x) < HUGE_VAL) {
-        x.core = (x.n + 6) / 7;
-        x.reach *= 0.8;                          /* grows in the second round, too */
-        (void)hdi_threads_own(ctx, 64);
-        (void)hdi_patches_run(&x, "test");
-    }
-    (void)hdi_heat_end(&h);
-    hd_heat_free(heat);
-    hd_laplacian_free(lap);
-    CHECK(ctx->bytes_in_use == 0 && (!ctx->byte_limit || ctx->bytes_peak <= ctx->byte_limit));
-    return rep->status < 0 ? rep->status : e.status;
-}
-
-/* Bits do not depend on threads, or on what lacks memory beside others. */
-static void int_side_by_side(void) {
-    const shape *s = kit_shape("flat/60/60/0.3");
-    double *D = KIT_NEW(double, 12 * (int64_t)s->n);
-    const size_t size = 3 * (size_t)s->n + 6;
-    int32_t filters, k, cancelled = 0;
-    for (filters = 0; filters < 2; filters++) {
-        hd_report rep[2];
-        uint64_t peak = 0;
-        int left;
-        memset(D, 0, 2 * size * sizeof *D);
-        for (k = 0; k < 6; k++) {
-            static const int32_t threads[6] = {1, 2, 4, 0, 4, 4};
-            double *to = D + (k > 0 ? size : 0);
-            hd_context ctx;
-            memset(&ctx, 0, sizeof ctx);
-            ctx.n_threads = threads[k];
-            ctx.parallel_for = k == 3 ? int_backwards : NULL;
-            if (k == 4) ctx.byte_limit = 5 * peak;
-            if (k == 5) ctx.byte_limit = peak + peak / 2;
-            CHECK_MSG(int_pieces(&ctx, s, filters, to, rep + (k > 0)) >= 0, "%s", rep[k > 0].error.text);
-            if (k == 0) peak = ctx.bytes_peak;
-            else CHECK_MSG(memcmp(D, to, size * sizeof *D) == 0, "filters %d, threads %d, run %d", (int)filters, (int)threads[k], (int)k);
-            CHECK(rep[k > 0].n_patches >= 7 && rep[k > 0].n_touched < s->n && rep[k > 0].error_bound == rep[0].error_bound);
-            CHECK(rep[k > 0].error_local == rep[0].error_local && rep[k > 0].error_relative == rep[0].error_relative);
-        }
-        for (k = 0; k < 400 && cancelled >= 0; k += 1 + k / 4) {
-            hd_context ctx;
-            memset(&ctx, 0, sizeof ctx);
-            ctx.n_threads = 3;
-            left = k;
-            ctx.progress = int_cancel;
-            ctx.progress_user = &left;
-            if (k > 40 && int_pieces(&ctx, s, filters, D, rep) == HD_ERR_CANCELLED) cancelled++;
-        }
-    }
-    CHECK(cancelled > 2);
-}
-
 /* The tests, in groups that free what they made. */
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
@@ -1533,7 +1432,7 @@ static void (*const int_tests[])(void) = {
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_least_squares, int_exp_rest, int_patches, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
-    int_damages_4, int_damages_5, int_side_by_side,
+    int_damages_4, int_damages_5,
 };
 
 int main(int argc, char **argv) {
