@@ -1090,8 +1090,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err);
 
 /* Single entries (i, j) of K_t or k_t. The bound may say nothing about small ones.
- * Cost   one column for each distinct j, with n doubles of memory at a time. Method local or auto, and 256
- *        vertices or more with i = j: the diagonal on patches around them */
+ * Cost   one column for each distinct j, with n doubles of memory at a time */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
@@ -20688,8 +20687,6 @@ typedef struct hdi_diagonals {
     double *D;                   /* [n n_times], columns ldd apart; NULL: not wanted */
     size_t ldd;
     double *Z, *bound;           /* [n_times] traces of K_t; NULL: not wanted */
-    int32_t n_rows;              /* patches */
-    const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
 
 /* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
@@ -21409,7 +21406,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     return h->e->status;
 }
 
-/* Room for pieces of all rows, or of those wanted. */
+/* Room for pieces of all rows. */
 static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active;
@@ -21417,8 +21414,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     int32_t q;
     memset(x, 0, sizeof *x);
     x->to = to;
-    x->n = to->rows ? to->n_rows : n;
-    x->core = x->n;
+    x->core = x->n = n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reach = h->heat->n_sets > 0 ? 0 : 1;
     for (q = 0; q < h->heat->n_sets; q++)
@@ -21430,7 +21426,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     if (h->e->status < 0 || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return h->e->status;
     x->each = HDI_PATCH_BYTES * (1 + hdi_set_packs(&set));
     x->queue = x->row + x->n;
-    for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
+    for (q = 0; q < x->n; q++) x->row[q] = q;
     return HD_OK;
 }
 
@@ -21510,39 +21506,6 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     *h->rep = rep;
     hdi_heat_free_factors(h->heat);
     return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
-}
-
-/* Are the entries asked for, in values [n_times][n], all of the diagonal, and are patches around their
- * vertices the way to them? Then it is done. */
-static int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
-                                  const int32_t *j, double *values) {
-    const hd_laplacian *lap = h->heat->source;
-    int may = n >= HDI_PATCH_LEAST && h->heat->n_sets < 2;
-    int32_t *rows, q, v;
-    hdi_diagonals to;
-    hdi_patches x;
-    int64_t p;
-    if (!HDI_HAS_DIAGONAL || !hdi_patches_can(h->heat)) return 0;
-    for (p = 0; p < n && may; p++) may = i[p] == j[p];
-    for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
-    if (!may) return 0;
-    memset(&to, 0, sizeof to);
-    to.task.h = h;
-    to.mass = mass;
-    to.ldd = (size_t)lap->n;
-    to.D = HDI_TAKE_ZERO(&h->s, double, to.ldd * (uint64_t)h->ask.n_times);
-    to.rows = rows = HDI_TAKE(&h->s, int32_t, lap->n_active);
-    if (h->e->status < 0) return 1;
-    for (p = 0; p < n; p++) to.D[i[p]] = 1;
-    for (v = 0; v < lap->n; v++)
-        if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
-    if (to.n_rows < HDI_PATCH_LEAST) return 0;
-    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
-    else if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
-    else (void)hdi_patches_run(&x, HDI_PATCHES_PAY);
-    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
-        for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
-    return 1;
 }
 
 /* ==== [28] diffusion ====
@@ -22125,15 +22088,6 @@ static hd_status hdi_distance_by_patches(hdi_task *task) {
     return hdi_scope_end(&s);
 }
 
-/* Would the diagonal cost less by patches? */
-static int hdi_distance_pays(hdi_heat_call *h, const hdi_distance_row *kind) {
-    hdi_diagonals to;
-    hdi_patches x;
-    memset(&to, 0, sizeof to);
-    to.task.h = h;
-    return hdi_patches_pay(&x, &to, kind->time);
-}
-
 /* Answers a query for distances: by patches where method local is asked for, where that costs less, and where
  * nothing else fits the byte limit. */
 static hd_status hdi_distance_answer(hdi_distance_query *to) {
@@ -22142,8 +22096,12 @@ static hd_status hdi_distance_answer(hdi_distance_query *to) {
     const int asked = heat->opts.method == HD_METHOD_LOCAL;
     const int may = to->kind->time > 0 && !heat->opts.rational && hdi_patches_can(heat);
     const hd_heat_opts opts = heat->opts;
+    hdi_diagonals diagonal;
+    hdi_patches x;
+    memset(&diagonal, 0, sizeof diagonal);
+    diagonal.task.h = h;
     to->reason = asked ? "asked for" : HDI_PATCHES_PAY;
-    if (!may || (!asked && !hdi_distance_pays(h, to->kind))) {
+    if (!may || (!asked && !hdi_patches_pay(&x, &diagonal, to->kind->time))) {
         if (h->e->status < 0 || hdi_heat_sparing(h, &to->task) >= 0 || !may ||
             !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
         hdi_error_clear(h->e);
@@ -24554,8 +24512,6 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
         hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
-    if (h.e->status >= 0 && hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
-        return hdi_heat_end(&h);
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
