@@ -18597,7 +18597,7 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 }
 
 /* The worse of two reports, with their counts added. */
-static void hdi_report_merge(hd_report *all, const hd_report *one) {
+static HDI_COLD void hdi_report_merge(hd_report *all, const hd_report *one) {
     hd_report sum = *one;
     int32_t p;
     sum.status = all->status > sum.status ? all->status : sum.status;
@@ -19234,7 +19234,7 @@ static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
 }
 
 /* Picks the method by the first rule that holds, or by the model. */
-static hd_status hdi_heat_pick(hdi_heat_call *h) {
+static HDI_COLD hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const struct { int holds; hd_method method; const char *reason; } rule[] = {
         {heat->opts.method != HD_METHOD_AUTO, heat->opts.method, "asked for"},
@@ -19257,7 +19257,7 @@ static hd_status hdi_heat_pick(hdi_heat_call *h) {
 }
 
 /* Picks the method and its copy of the pair, and reports them. */
-static hd_status hdi_heat_engine(hdi_heat_call *h) {
+static HDI_COLD hd_status hdi_heat_engine(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     if (h->t == 0) {                             /* nothing to solve */
         h->method = heat->opts.method;
@@ -19577,7 +19577,7 @@ static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
 
 /* Answers time q, which poles have answered, from eigenpairs after all, if the bound is too large and theirs
  * is lower. bound: theirs, if they were tried before, or negative. */
-static hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
+static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
     const int32_t most = bound < 0 ? HDI_MODES_MOST : task->serves;
@@ -20811,7 +20811,7 @@ static hd_status hdi_diagonals_of(const hdi_diagonals *to, hdi_inverses *x, cons
 }
 
 /* Time q where t is so large that k_t(i,i) = 1/mass of the component. */
-static hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_report *rep) {
+static HDI_COLD hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_report *rep) {
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const hd_laplacian *lap = h->heat->elim.lap;
@@ -20902,7 +20902,7 @@ static hd_status hdi_window_take(hdi_inverses *x, hdi_heat_call *h, int32_t q0, 
 }
 
 /* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+static HDI_COLD hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -20978,7 +20978,7 @@ static void hdi_fading_trace(const hdi_diagonals *to, double t) {
 }
 
 /* The time under way from the pairs that are there. */
-static hd_status hdi_diagonals_by_pairs(hdi_task *task) {
+static HDI_COLD hd_status hdi_diagonals_by_pairs(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     const double t = h->ask.t[h->now];
@@ -21127,7 +21127,7 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
 
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
  * all patches less those of the whole mesh. */
-static double hdi_patch_cut(hdi_patches *x) {
+static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
     hdi_heat_call *h = x->to->task.h;
     const int32_t n = h->heat->source->n_active;
     const double wide = (double)h->heat->source->L.nnz / n;
@@ -21351,7 +21351,7 @@ static void hdi_patch_tell(const hdi_patches *x, int32_t core, const double *D, 
 }
 
 /* The patch of a piece of `core` rows. The caller gets values that leave out no more than `wanted`. */
-static hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_report *rep) {
+static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wanted, hd_report *rep) {
     hdi_heat_call *h = x->to->task.h, in;
     hd_heat *own = &x->local->heat;
     hdi_diagonals to = *x->to;
@@ -21656,7 +21656,7 @@ static void hdi_report_unbound(hd_report *rep) {
 
 /* The diagonal by patches at the time under way, in the order of the source's rows. A column's errors are the
  * same everywhere; those of B times it are by the sums of B's rows. local: the reports. */
-static hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
+static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                     hd_report *local, hdi_scope *s) {
     const hd_laplacian *lap = h->heat->source;
     const double t = kind->time * h->ask.t[h->now];
@@ -22069,7 +22069,7 @@ static hd_status hdi_distance_by_pairs(hdi_task *task) {
 }
 
 /* The answer by poles, for so many sources at the same time, as in hdi_metric_make. */
-static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
+static HDI_COLD hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
     hdi_scope s = hdi_scope_begin(to->task.h->heat->ctx, to->task.h->e);
     hdi_metric x;
     if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
@@ -22077,7 +22077,7 @@ static hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t gr
 }
 
 /* The answer by patches and balls. */
-static hd_status hdi_distance_by_patches(hdi_task *task) {
+static HDI_COLD hd_status hdi_distance_by_patches(hdi_task *task) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
     hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
     hd_report local;
@@ -22090,7 +22090,7 @@ static hd_status hdi_distance_by_patches(hdi_task *task) {
 
 /* Answers a query for distances: by patches where method local is asked for, where that costs less, and where
  * nothing else fits the byte limit. */
-static hd_status hdi_distance_answer(hdi_distance_query *to) {
+static HDI_COLD hd_status hdi_distance_answer(hdi_distance_query *to) {
     hdi_heat_call *h = to->task.h;
     hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;
@@ -22196,7 +22196,7 @@ static hd_status hdi_distances_by_poles(hdi_task *task) {
 }
 
 /* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+static HDI_COLD hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     const hdi_distances *to = (const hdi_distances *)task;
     hdi_heat_call *h = task->h;
     const int32_t *column = h->time_column + q0, count = q1 - q0;
@@ -22362,7 +22362,7 @@ static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i,
 
 /* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
  * first vertex has a column, and errors are those of all vertices from these. */
-static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
     const hdi_pairs *to = (const hdi_pairs *)of;
     hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
@@ -22391,7 +22391,7 @@ static void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mo
 
 /* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
  * by the metric. */
-static hd_status hdi_pairs_by_poles(hdi_task *task) {
+static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
@@ -22435,7 +22435,7 @@ typedef struct hdi_samples {
 
 /* All points, each the one that is farthest from those before it. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+static HDI_COLD void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
     const hdi_samples *a = (const hdi_samples *)of;
     hdi_heat_call *h = of->task.h;
     const hd_laplacian *lap = h->heat->source;
