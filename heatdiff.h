@@ -1090,7 +1090,8 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
                                       double *distance, hd_report *report, hd_error *err);
 
 /* Single entries (i, j) of K_t or k_t. The bound may say nothing about small ones.
- * Cost   one column for each distinct j, with n doubles of memory at a time */
+ * Cost   one column for each distinct j, with n doubles of memory at a time. Method local or auto, and 256
+ *        vertices or more with i = j: the diagonal on patches around them */
 HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times,
                                        const double *t, int64_t n_pairs, const int32_t *i,
                                        const int32_t *j, double *values, hd_report *report,
@@ -11913,8 +11914,7 @@ static void hdi_residues_fit(hd_rational *set, int64_t n, const double *x, const
  *   C. Lawson, Contributions to the theory of linear least maximum approximation, 1961: least squares
  *     whose weights follow the error
  *   H. Ehlich, K. Zeller, Schwankung von Polynomen zwischen Gitterpunkten, 1964: the bound between points
- * Deviation: the poles are free rather than on a hyperbola, which needs twice as many.
- * tools/shared_poles.py prints the table (in about 15 minutes) and checks it. */
+ * Deviation: the poles are free rather than on a hyperbola, which needs twice as many. */
 
 /* shared_poles.py: begin */
 /* Computed by tools/shared_poles.py, which also checks it. Each set begins with the largest ratio of
@@ -12258,8 +12258,7 @@ enum {
 };
 /* Poles of several filters are not looked at before their fractions are this close to the tolerance. */
 #define HDI_FIT_CLOSE 100
-/* Their errors at the points of the fit are this part of the tolerance: between them they were up to three
- * times as large with 60 filters. */
+/* Their errors at the points are this part of the tolerance: between them they were three times that. */
 #define HDI_FIT_MARGIN 0.3
 #define HDI_FIT_TOL 1e-10
 /* Where nothing is known of the smallest eigenvalue, points begin at the first number times lambda_max. Those
@@ -12995,8 +12994,7 @@ enum { HDI_LANCZOS_MAX = 4096 };
 
 /* The most steps that Lanczos can take for t lambda_max. In exact arithmetic the error of m steps is at most
  * 10 exp(-m^2/(1.25 t lambda_max)) from sqrt(t lambda_max) on, and falls faster beyond t lambda_max/2
- * (Hochbruck, Lubich 1997, theorem 2): 7.4 sqrt(t lambda_max) steps for 1e-18. Rounding repeats some of them,
- * and to see that no step helps any more takes a third more and 20. */
+ * (Hochbruck, Lubich 1997, theorem 2): 7.4 sqrt(t lambda_max) for 1e-18. Rounding repeats some of them. */
 static int32_t hdi_lanczos_most(double t, double lambda_max) {
     const double most = 100 + 12 * sqrt(t * lambda_max);
     return most < (double)HDI_LANCZOS_MAX ? (int32_t)most : HDI_LANCZOS_MAX;
@@ -13192,8 +13190,7 @@ static double hdi_pole_error(const hdi_iteration *k) {
     return k->r_norm * hdi_ratio_root(k->a.lap) / hdi_pole_distance(k->a.theta);
 }
 
-/* A measured residual: twice what was found, and an eighth of the worst that rounding could hide, about a
- * unit in the last place of every row. */
+/* A measured residual: twice what was found, and an eighth of the worst that rounding could hide. */
 static double hdi_residual_seen(double found, double rounding) { return 2 * found + rounding / 8; }
 
 /* Enters the residual of pole p into the lane's bounds. found: as computed, rounding: its bound on rounding,
@@ -13277,8 +13274,7 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
 }
 
 /* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
- * share of what is left over by those before it. fresh: each starts from the solution of the one before it,
- * else from where it is. The order from the last pole to the first was the fastest in measurements. */
+ * share of what is left. fresh: each starts from the solution of the one before it, else where it is. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
@@ -13477,8 +13473,7 @@ static hd_status hdi_elim_poles(hdi_elim *m, const hd_rational *set, double t, h
     return HD_OK;
 }
 
-/* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges that lead there
- * from its vertices. */
+/* The rim of a part of the mesh that is a pair of its own: the rows around it, and the edges to them. */
 typedef struct hdi_rim {
     int32_t n, n_edges, conserves;   /* conserves: no heat is lost but over the rim */
     const int32_t *to, *from;    /* [n_edges] which of the rows; a vertex of the part */
@@ -14129,8 +14124,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
  * the last bit, and adds them up. This is as much work as to write hundreds of vectors to memory and read
  * them back, and needs room for six.
  * There is no reorthogonalisation. Slivers have a few huge eigenvalues that come back as copies. This costs a
- * third more steps (bunny, t = 100 h^2: 280, with full reorthogonalisation 200) and no accuracy. Simon's
- * partial reorthogonalisation saves those steps but takes 2.4 times as long. */
+ * third more steps and no accuracy; Simon's partial one takes 2.4 times as long. */
 
 static hd_status hdi_lanczos_failed(hd_error *e) {
     return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
@@ -14526,8 +14520,7 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     return HD_OK;
 }
 
-/* Compares the residuals of the solves w = S B v with the bounds on their rounding. Only some of the first
- * solves are measured. */
+/* Compares residuals of the first solves w = S B v with the bounds on their rounding. */
 static void hdi_krylov_probe(hdi_krylov *z) {
     const hd_laplacian *lap = z->m->lap;
     double *x = z->probe, *rest = x + lap->n_active;
@@ -14725,9 +14718,8 @@ static void hdi_krylov_sum_run(const hdi_krylov *z, hdi_krylov_sum *a, hd_contex
 /* ---- what answers are off by ---- */
 
 /* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
- * the right angle. What lies between them is below the maximum on them times this number. Tuned on meshes of
- * 1K to 1M vertices. The sine is its Taylor series up to x^9, to 2e-9: with that of the C library come 6 KB
- * of code for large arguments. */
+ * the right angle. What lies between them is below the maximum on them times this number, tuned on meshes.
+ * The sine is its Taylor series up to x^9: that of the C library brings 6 KB for large arguments. */
 #define HDI_KRYLOV_BETWEEN 1.2
 
 static double hdi_krylov_point(int32_t k) {
@@ -14913,8 +14905,7 @@ static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t
 }
 
 /* Convergence has stopped when so many steps do not halve what is missing. An answer that has died away has
- * no digits left, and none is missed when the error is below this, relative to f. Tuned on meshes of 1K to 1M
- * vertices. */
+ * no digits left, and none is missed when the error is below this, relative to f. Both are tuned. */
 #define HDI_KRYLOV_PATIENCE 12
 #define HDI_KRYLOV_FAILED 1e-6
 
@@ -15006,8 +14997,7 @@ static const hdi_distance_row *hdi_distance_of(hd_distance_kind kind) {
 
 /* ---- sources ---- */
 
-/* A source as weights of vertices, which ascend: a functional of fields. One vertex with weight 1 has weight
- * NULL. */
+/* A source as weights of vertices, which ascend: a functional of fields. weight NULL: one vertex, of 1. */
 typedef struct hdi_terms {
     int32_t n, one;              /* one: that vertex */
     const int32_t *vertex;       /* [n] */
@@ -15748,8 +15738,7 @@ static void hdi_spec_mass(const hdi_spec *s, const double *w) {
     hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
 }
 
-/* w -= V V'(B w) and bw = B w, which is there before, too, for any number of blocks v. removed [8], or NULL:
- * squares of norms of what was taken out. */
+/* w -= V V'(B w) and bw = B w, also there before, for any blocks v. removed [8] or NULL: |taken out|^2. */
 static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *removed) {
     int32_t i, n, j;
     if (removed) memset(removed, 0, HDI_WIDE * sizeof *removed);
@@ -16273,8 +16262,7 @@ static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     return HD_OK;
 }
 
-/* A bound from below of all eigenvalues but the first n. Between values found above the last shift others may
- * be missing, which no count has seen. */
+/* A bound from below of all eigenvalues but the first n. Above the last shift no count has seen them. */
 static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
     const int32_t proven = s->out->proven;
     if (n == s->n) return HUGE_VAL;
@@ -16725,8 +16713,7 @@ static void hdi_spec_sum_errors(hdi_spec_sums *a) {
     }
 }
 
-/* The source's entries in the vectors, and its norms: of a sum of vertices by the triangle inequality. Those
- * without a row count nothing. */
+/* The source's entries in the vectors, and its norms, by the triangle inequality. */
 static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
     const hdi_share none = {0, 0, 0, 0, 0};
     int32_t q, i;
@@ -16744,8 +16731,7 @@ static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
     hdi_spec_sum_errors(a);
 }
 
-/* Vertices without mass in K_t. Without a time, other components and vertices without a row are out of
- * reach. */
+/* Vertices without mass in K_t. Without a time, other components and those without a row are beyond. */
 static void hdi_spec_sum_others(const hdi_spec_sums *a, const hdi_terms *from) {
     const hd_laplacian *lap = a->of->s.lap;
     const int32_t own = a->power ? hdi_terms_component(lap, from) : -1;
@@ -16909,8 +16895,7 @@ struct hd_heat {
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
     double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
-    /* conserving pairs: how fast a constant would change in time if row sums were not taken as zero;
-     * negative: not known yet */
+    /* how fast a constant would change if row sums were not taken as zero; negative: not known yet */
     double drift;
     int64_t version;             /* of the Laplacian from which all this was made */
     hdi_sum *sums;               /* [n_sums] work */
@@ -17172,8 +17157,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
 /* ---- what iterations take ---- */
 
 /* Of one quiet core: flops per second with packs and with real fronts; bytes per second that stream from
- * memory; seconds for a byte of fresh memory, which the system clears, and for a row of an ordering with its
- * analysis. Measured on meshes of 10K to 1M vertices. */
+ * memory; seconds for a byte of fresh memory, which the system clears, and to order and analyse a row. */
 #define HDI_RATE_PACK 70e9
 #define HDI_RATE_REAL 25e9
 #define HDI_RATE_BYTES 15e9
@@ -17552,9 +17536,8 @@ static double hdi_lane_f_off(const hd_laplacian *lap, hdi_lane *lane) {
     return sqrt(sum) * hdi_ratio_root(lap) + hdi_lane_rhs_off(lap, lane->f);
 }
 
-/* Takes the constants, which do not change in time, out of a field. Where they are nearly all of it,
- * rounding leaves some of them, which the second pass takes out. The rounding of the differences is small
- * beside that. */
+/* Takes the constants, which do not change in time, out of a field. Where they are nearly all of it, rounding
+ * leaves some of them, which the second pass takes out. */
 static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
     int32_t i, pass;
     if (!lap->conserves) return;
@@ -18179,8 +18162,7 @@ static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) 
 
 enum { HDI_PROBES = 3 };         /* rows at which rounding of an inversion is measured, see [27] */
 
-/* Inverting factors takes as many times the work of making them: by counting; and by time, with a diagonal B,
- * on meshes of 10K to 150K vertices. */
+/* Inverting factors takes as many times the work of making them, and about as many times the time. */
 #define HDI_INVERT 2.0
 
 /* Are the factors of the poles there? The default degree of fields is not known yet: that of the last call is
@@ -18352,8 +18334,7 @@ static int32_t hdi_window_end(const double *times, int32_t n_times, int32_t q0, 
 /* A shift for the times [first, last] of a window that begins with fields, or with answers at `from`. A
  * single time takes about a tenth of it, and a power of four, so that times near each other share the factor,
  * whichever comes first. Several times depend on it more: half or twice the best shift costs up to a fourth
- * of the steps. The best ones were found on meshes of 10K to 50K vertices, for ratios of 2 to 300. It is
- * not so large that B is lost beside g L. */
+ * of the steps. It is not so large that B is lost beside g L. */
 #define HDI_SHIFT_FIELD 0.07
 #define HDI_SHIFT_ANSWER 0.15
 #define HDI_SHIFT_RATE 4         /* the least for derivatives, times the largest eigenvalue */
@@ -18372,8 +18353,7 @@ static double hdi_krylov_shift(double from, double first, double last, double la
 typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
 
 /* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
- * other windows go on from its answers. Fitted to runs at ratios from 2 to 300 on meshes of 10K to 50K
- * vertices; fewer are enough at large times, where few eigenvalues matter. */
+ * other windows go on from its answers. Fitted to runs; fewer are enough at large times. */
 #define HDI_STEPS_HANDED_ON 3
 
 static double hdi_krylov_steps(double ratio, int goes_on) {
@@ -18935,9 +18915,8 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     return e->status;
 }
 
-/* The radius of a ball in edges, where sqrt(t) is so many: on meshes of 250K vertices with jitter it leaves
- * 1e-8 to 1e-7 of the peak. Without places ways go over edges, and are longer than straight ones by the first
- * number. */
+/* The radius of a ball in edges, where sqrt(t) is so many: it leaves 1e-8 to 1e-7 of the peak. Without places
+ * ways go over edges, and are longer than straight ones by the first number. */
 #define HDI_LOCAL_TURNS 1.36
 
 static double hdi_local_edges(const hd_laplacian *lap, double edges) {
@@ -19294,9 +19273,8 @@ static HDI_COLD hd_status hdi_heat_engine(hdi_heat_call *h) {
 /* The tolerance of the residuals of eigenpairs, far below what the bound allows for at t lambda = 700. */
 #define HDI_MODES_RESIDUAL 1e-12
 /* Eigenpairs are tried before poles where at most the first number of them is expected to be enough, which
- * takes one to two times as long as poles, once; and after poles up to the second number, which takes about
- * ten times as long. On meshes of 642 to 164K vertices the bound by poles goes above 1e-6 where 13 to 340 are
- * expected, and for sources all over the surface just below the third number times span^1.2. */
+ * takes one to two times as long as poles, once; and after poles up to the second, which takes ten times as
+ * long. For sources all over, poles' bounds go above 1e-6 just below the third number times span^1.2. */
 #define HDI_MODES_FIRST 20
 #define HDI_MODES_MOST 360
 #define HDI_MODES_MANY 0.02
@@ -19677,8 +19655,7 @@ static hd_status hdi_late_make(hdi_spec_sums *a, hdi_heat_call *h, int distance,
     return HD_OK;
 }
 
-/* The bounds of a lane's answer. most: the largest norms of vertices. found, kept: |c|^2 of the field and of
- * the answer before its decay. */
+/* The bounds of a lane's answer. most: norms of vertices. found, kept: |c|^2 of field and answer. */
 static void hdi_fading_bound(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_share *most, double found,
                              double kept, hdi_lane *lane) {
     const hdi_bank *b = &a->bank;
@@ -19886,8 +19863,7 @@ static hd_status hdi_heat_sparing(hdi_heat_call *h, hdi_task *task) {
     return h->e->status;
 }
 
-/* Checks the times of a call and takes them up. positive: zero is an error. A filter has one time, that of
- * its set, and is known up to an eigenvalue. */
+/* Checks the times of a call and takes them up. positive: zero is an error. A filter has that of its set. */
 static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double *t, int positive) {
     const hd_rational *set = h->heat->opts.rational;
     const int filter = set && set->t > 0;
@@ -20495,8 +20471,7 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
 
 /* ---- rounding of inversions ---- */
 /* No theorem bounds well what rounding does to entries found by inversion. It is measured at a few rows where
- * it is largest: the entry is compared with a solve with the same poles, whose own error its residual
- * bounds. */
+ * it is largest, against a solve with the same poles, whose error its residual bounds. */
 
 /* Rounding in all rows is taken as the difference seen at the probes, times the first number. For the
  * caller's functions, whose poles may lie beside the spectrum, also times the second. */
@@ -20663,9 +20638,8 @@ static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inver
 /* ---- diagonals and traces ---- */
 
 /* The highest degree takes over where the bound of a diagonal's error, relative to the value itself, is above
- * this. The errors themselves are below 1e-7 then. Tuned on meshes of 1K to 1M vertices; with B = I errors
- * come closer to their bound. The bound of the operator's diagonal with a full B is not as sharp by this
- * factor. */
+ * this: errors themselves are below 1e-7 then. With B = I they come closer to their bound. That
+ * of the operator's diagonal with a full B is not as sharp by the last factor. */
 #define HDI_DIAGONAL_SURE 5.3e-7
 #define HDI_DIAGONAL_SURE_PLAIN 4.2e-7
 #define HDI_DIAGONAL_LOOSE 50
@@ -20675,8 +20649,7 @@ static double hdi_diagonal_limit(const hd_laplacian *lap, int loose) {
            (hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
 }
 
-/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels. Tuned on meshes
- * of 1K to 1M vertices. */
+/* Largest weighted error of shared sets for diagonals, and for distances, where much cancels: tuned. */
 #define HDI_SHARED_TOL 2.5e-8
 #define HDI_SHARED_DISTANCE_TOL 2e-10
 
@@ -20687,6 +20660,8 @@ typedef struct hdi_diagonals {
     double *D;                   /* [n n_times], columns ldd apart; NULL: not wanted */
     size_t ldd;
     double *Z, *bound;           /* [n_times] traces of K_t; NULL: not wanted */
+    int32_t n_rows;              /* patches */
+    const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
 
 /* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
@@ -21255,8 +21230,7 @@ static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t
     return sum;
 }
 
-/* The largest of a row of squares among the first `count` vertices, or for a set of the caller's of all its
- * poles' as they count. */
+/* The largest of a row of squares among the first `count` vertices, or for own sets of the poles' sums. */
 static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
                              const hd_rational *set) {
     const hd_laplacian *lap = in->heat->elim.lap;
@@ -21406,7 +21380,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     return h->e->status;
 }
 
-/* Room for pieces of all rows. */
+/* Room for pieces of all rows, or of those wanted. */
 static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active;
@@ -21414,7 +21388,8 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     int32_t q;
     memset(x, 0, sizeof *x);
     x->to = to;
-    x->core = x->n = n;
+    x->n = to->rows ? to->n_rows : n;
+    x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reach = h->heat->n_sets > 0 ? 0 : 1;
     for (q = 0; q < h->heat->n_sets; q++)
@@ -21426,7 +21401,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     if (h->e->status < 0 || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return h->e->status;
     x->each = HDI_PATCH_BYTES * (1 + hdi_set_packs(&set));
     x->queue = x->row + x->n;
-    for (q = 0; q < x->n; q++) x->row[q] = q;
+    for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
     return HD_OK;
 }
 
@@ -21506,6 +21481,38 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     *h->rep = rep;
     hdi_heat_free_factors(h->heat);
     return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
+}
+
+/* Entries, in values [n_times][n], by patches around their vertices. 0: they are not all of the diagonal. */
+static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
+                                           const int32_t *j, double *values) {
+    const hd_laplacian *lap = h->heat->source;
+    int may = n >= HDI_PATCH_LEAST && h->heat->n_sets < 2;
+    int32_t *rows, q, v;
+    hdi_diagonals to;
+    hdi_patches x;
+    int64_t p;
+    if (!HDI_HAS_DIAGONAL || !hdi_patches_can(h->heat)) return 0;
+    for (p = 0; p < n && may; p++) may = i[p] == j[p];
+    for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
+    if (!may) return 0;
+    memset(&to, 0, sizeof to);
+    to.task.h = h;
+    to.mass = mass;
+    to.ldd = (size_t)lap->n;
+    to.D = HDI_TAKE_ZERO(&h->s, double, to.ldd * (uint64_t)h->ask.n_times);
+    to.rows = rows = HDI_TAKE(&h->s, int32_t, lap->n_active);
+    if (h->e->status < 0) return 1;
+    for (p = 0; p < n; p++) to.D[i[p]] = 1;
+    for (v = 0; v < lap->n; v++)
+        if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
+    if (to.n_rows < HDI_PATCH_LEAST) return 0;
+    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
+    else if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
+    else (void)hdi_patches_run(&x, HDI_PATCHES_PAY);
+    for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
+        for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
+    return 1;
 }
 
 /* ==== [28] diffusion ====
@@ -22255,8 +22262,7 @@ static void hdi_pairs_vertices(const hdi_pairs *to, hdi_pairs_part *x, int32_t n
         if (x->place[v] == 0) x->place[v] = x->n_vertex++;
 }
 
-/* |u - v|_B of fields on vertices, whose squares may leave the range of doubles; v NULL: |u|_B. work
- * [2 n_active]. */
+/* |u - v|_B of fields on vertices, whose squares may overflow; v NULL: |u|_B. work [2 n_active] */
 static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const double *v, double *work) {
     double most;
     int32_t r;
@@ -22389,8 +22395,7 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
     (void)hdi_scope_end(&s);
 }
 
-/* Distances at the time under way from columns of all vertices of the pairs or, where these have no room,
- * by the metric. */
+/* Distances at the time under way from columns of all vertices or, without room for these, by the metric. */
 static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
@@ -22483,8 +22488,7 @@ static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distan
     task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
 
-/* The start of a query of a distance. All but pairs of vertices have positive times and the direct method
- * only. Without a time n_times is 0 or 1, and t is not read. */
+/* The start of a query of a distance. Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
                                     int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
@@ -22627,8 +22631,7 @@ static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int3
     hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
 }
 
-/* Bytes where the highest degree takes over; of inversions and distances after a try whose lanes and real
- * factor stay. */
+/* Bytes where the highest degree takes over; the lanes and real factor of an inversion before it stay. */
 static double hdi_estimate_most(const hdi_estimate *x) {
     const hdi_heat_call *h = x->h;
     const hdi_elim *m = &h->heat->elim;
@@ -22730,13 +22733,11 @@ static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
 
 /* ---- estimates of eigenpairs ---- */
 
-/* Seconds that an eigenpair costs for each vertex, without factors, and how many pairs' cost is added for the
- * beginning. Half of HDI_MODES_MOST pairs cost twice as much each. Measured on 2.5K to 43K vertices. */
+/* Seconds that an eigenpair costs for each vertex, without factors, and pairs to add for the beginning. */
 #define HDI_MODES_SECONDS 7e-7
 #define HDI_MODES_BEGIN 5
 
-/* Bytes that eigenpairs may need, relative to those for the number expected, where more are looked for: 1.14
- * was seen on small meshes. */
+/* Bytes that eigenpairs may need where more are looked for than expected: 1.14 times was seen. */
 #define HDI_MODES_OVER 1.25
 
 /* The cost of finding `count` of them. */
@@ -23526,9 +23527,7 @@ static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages
 /* Near a source u is a hat, and says little about the direction to a point inside a face. There the distance
  * is known: the corners of a face that the source lies in are as far from it as straight lines are long. In
  * these faces X is the gradient of these distances, linear between the corners. phi is compared with them.
- * On spheres of 642 to 10K vertices the mean error is then 0.05 to 0.13 h; and 0.47 to 0.62 h if the
- * interpolated distance at the point itself is made zero, which a cone between three corners is not. With X
- * by heat everywhere a line across squares is off by up to 0.57 h instead of less than 0.1 h. */
+ * The mean error on spheres is 0.05 to 0.13 h then, not 0.5 h. */
 
 /* Barycentric coordinates below this do not keep a point off an edge, or off a vertex. */
 #define HDI_GEO_ASIDE 1e-9
@@ -24512,6 +24511,8 @@ HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t 
         hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
     if (n_pairs > 0 && !values) hdi_missing(h.e);
     list.values = values;
+    if (h.e->status >= 0 && hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
+        return hdi_heat_end(&h);
     if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
     return hdi_heat_run(&h);
 }
