@@ -18031,8 +18031,7 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
-/* Lanczos where the caller leaves the choice and asks for no pole set or derivative, B needs no solve, and by
- * the model it takes less time for one item. */
+/* Lanczos where the choice is free, B needs no solve, and by the model it takes less time for one item. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
@@ -18173,8 +18172,7 @@ static int hdi_heat_at_hand(const hdi_heat_call *h) {
     return h->set || h->heat->opts.rational || m->set.kind == hdi_heat_kind(h);
 }
 
-/* Adds what a set takes at one time: its factors, what comes after them, and solves of k items, while arrays
- * hold `held` bytes. Flops and seconds add up, of bytes the largest number counts. */
+/* Adds what a set takes at one time for k items, while arrays hold `held` bytes. Of bytes the most counts. */
 static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *set, hdi_after after,
                                     int32_t n_sets, int32_t k, double held, hd_cost *c) {
     hd_heat *heat = h->heat;
@@ -19553,8 +19551,7 @@ static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* Answers time q, which poles have answered, from eigenpairs after all, if the bound is too large and theirs
- * is lower. bound: theirs, if they were tried before, or negative. */
+/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs if tried, or negative. */
 static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
@@ -19771,20 +19768,23 @@ static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
     if (lane->f_off > 0) lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
-/* The derivative -A f, A = B^-1 L of the scaled pair. Rounding of f counts as much as that of
- * the product. */
+/* The derivative -A f, A = B^-1 L, in units of its largest eigenvalue, as squares might be too small. */
 static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const double unit = 1 / h->heat->scale;
-    double *w = lane->tmp, *noise = w + lap->n_active, sum = 0;
+    double *w = lane->tmp, *noise = w + lap->n_active, sum = 0, unit;
     int32_t i;
+    int size;
+    (void)frexp(h->heat->lambda_max, &size);
+    unit = ldexp(1 / h->heat->scale, -size);
     hdi_noise_weights(lap, unit, 0, noise, noise + lap->n_active);
     for (i = 0; i < lap->n_active; i++) sum += noise[i] * lane->f[i] * lane->f[i];
     hdi_pair_apply(lap, -unit, 0, lane->f, w);
     if (hdi_mass_solve(lap, HDI_MASS_STOP, w, lane->u, noise, h->e) < 0) return;
-    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    hdi_lane_rounding(lane, hdi_ratio_root(lap) *
-                            (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * lane->u_norm));
+    unit = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+    lane->u_norm = ldexp(unit, size);
+    for (i = 0; i < lap->n_active; i++) lane->u[i] = ldexp(lane->u[i], size);
+    hdi_lane_rounding(lane, ldexp(hdi_ratio_root(lap) *
+                                  (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * unit), size));
 }
 
 static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {

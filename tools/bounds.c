@@ -224,6 +224,7 @@ static const char *const fixed_cases[] = {
     "shape=sphere/2 op=fem+held query=column th=1000 k=6",
     "shape=sliver/2/6 op=fem+held query=column th=1e4",
     "shape=two/2/3 op=fem+held query=column th=100 k=6",
+    "shape=points/60/1/1 op=exp+held scale=1e+40 query=derivative method=local t=1e-310 field=level seed=225545",
     "shape=leak/64/4e-12 op=I query=diagonal kernel=symmetric t=1e13",
     "shape=leak/64/4e-12 op=I query=column t=1e13 k=4"};
 
