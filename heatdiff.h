@@ -19551,7 +19551,7 @@ static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs if tried, or negative. */
+/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs, if tried, or -1. */
 static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
