@@ -12757,7 +12757,7 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far.
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
  * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger and
- * hdi_heat_note say how each is known; and a lane has them in the norm of B from its engine. With poles
+ * hdi_heat_collect say how each is known; and a lane has them in the norm of B from its engine. With poles
  * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_most
  * (solver), hdi_rim_bound (local) and hdi_krylov_rounding, from the residuals that hdi_krylov_probe measures;
  * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by; rhs_off and f_off of
@@ -12950,10 +12950,11 @@ static double hdi_inverse_mass(const hd_laplacian *lap, int32_t i) {
 /* All right-hand sides share the pair, and the preconditioners for a set and a time. */
 typedef struct hdi_family {
     hd_context *ctx;
-    const hd_laplacian *lap;
-    const hdi_upper *up;
-    const double *weight;        /* [n] 1/diag(B) */
-    double *noise, *noise_work;  /* [n] weights of rounding for set and t */
+    hd_laplacian *lap;
+    hdi_upper up;
+    double *weight;              /* [n] 1/diag(B) */
+    /* [n] weights of rounding of a product with L, and for set and t; work */
+    double *noise_l, *noise, *noise_work;
     hd_solver solver;
     hd_precond precond;
     int64_t max_iterations;
@@ -12983,7 +12984,7 @@ static int hdi_family_shares(const hdi_family *fam) { return fam->n_values < fam
 
 /* Values of a preconditioner. */
 static uint64_t hdi_family_size(const hdi_family *fam) {
-    return hdi_precond_size(hdi_preconds + fam->precond, fam->up->n, fam->up->ptr[fam->up->n]);
+    return hdi_precond_size(hdi_preconds + fam->precond, fam->up.n, fam->up.ptr[fam->up.n]);
 }
 
 /* Most right-hand sides at a time: in all, by iterations, and in a batch with the factors of the poles.
@@ -13140,7 +13141,7 @@ static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
         k->weight = fam->weight;
         k->noise = fam->noise;
         k->m.row = hdi_preconds + fam->precond;
-        k->m.up = fam->up;
+        k->m.up = &fam->up;
         k->m.a = k->a;
         if (fam->solver == HD_SOLVER_MINRES)     /* real, positive definite */
             k->m.a.theta = hdi_c(hdi_cabs(k->a.theta), 0);
@@ -14852,7 +14853,6 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
     double most[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
-    lane->steps = m > 0 ? m : 0;
     if (m > 0) {
         hdi_ritz_most(z->ritz + r, t / z->g, most);
         lane->off.solver = z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
@@ -16886,20 +16886,14 @@ struct hd_heat {
     struct hdi_local *part;      /* of the last column that was answered on a part of the mesh */
     double *batch_room;          /* arrays of the batches */
     uint64_t batch_doubles;
-    hd_laplacian *lap;           /* to iterate on: renumbered and scaled */
-    hdi_upper up;
-    double *weight;              /* [n] 1/diag(B) */
-    hdi_family fam;              /* of the last set and time */
+    hdi_family fam;              /* to iterate on: the pair renumbered and scaled, of the last set and time */
     hdi_lane *lane;              /* [n_lanes] work arrays, kept from call to call; HDI_LANES at most */
     int32_t n_lanes;
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
-    double *noise;               /* [n] weights of rounding of a product with L, in lap's order */
     /* how fast a constant would change if row sums were not taken as zero; negative: not known yet */
     double drift;
     int64_t version;             /* of the Laplacian from which all this was made */
-    hdi_sum *sums;               /* [n_sums] work */
-    int32_t n_sums;              /* components that these and the lanes are for */
 };
 
 /* Is tol below the default? Then sets have the highest degree. */
@@ -16959,17 +16953,6 @@ static void hdi_heat_free_lanes(hd_heat *heat) {
     heat->n_lanes = 0;
 }
 
-/* Room for sums over components. Lanes for another number of them are made anew. */
-static hd_status hdi_heat_sums(hd_heat *heat, hd_error *e) {
-    const int32_t n = heat->source->n_components;
-    if (n == heat->n_sums) return HD_OK;
-    hdi_heat_free_lanes(heat);
-    hdi_free(heat->ctx, heat->sums);
-    heat->sums = HDI_NEW(heat->ctx, hdi_sum, n, e);
-    heat->n_sums = heat->sums ? n : 0;
-    return e->status;
-}
-
 /* Gives the plan n lanes, or leaves it more. Each of the n has this room. */
 static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hdi_lane_room room, hd_error *e) {
     int32_t i;
@@ -16983,38 +16966,33 @@ static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hdi_lane_room roo
 }
 
 static void hdi_heat_free_iterative(hd_heat *heat) {
-    hdi_family_free(&heat->fam);
-    hdi_free(heat->ctx, heat->up.ptr);
-    hdi_free(heat->ctx, heat->weight);
-    hdi_laplacian_free(heat->lap, heat->ctx);
-    heat->up.ptr = NULL;
-    heat->weight = NULL;
-    heat->lap = NULL;
+    hdi_family *fam = &heat->fam;
+    hdi_family_free(fam);
+    hdi_free(heat->ctx, fam->up.ptr);
+    hdi_free(heat->ctx, fam->weight);
+    hdi_laplacian_free(fam->lap, heat->ctx);
+    fam->up.ptr = NULL;
+    fam->weight = NULL;
+    fam->lap = NULL;
 }
 
 /* Makes the copy of the pair to iterate on. */
 static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
-    if (heat->weight) return HD_OK;
+    hdi_family *fam = &heat->fam;
+    const int64_t n = heat->source->n_active;
+    if (fam->weight) return HD_OK;
     hdi_heat_free_iterative(heat);               /* what a failure has left */
     if (hdi_progress(heat->ctx, "order", 0, e) < 0) return e->status;
-    heat->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
-    if (!heat->lap || hdi_upper_make(&heat->up, &heat->lap->L, heat->ctx, e) < 0) return e->status;
-    heat->weight = hdi_make_weight(heat->lap, heat->ctx, e);
-    if (!heat->weight) return e->status;
-    heat->noise = heat->weight + heat->lap->n_active;
-    heat->fam.noise = heat->noise + heat->lap->n_active;
-    heat->fam.noise_work = heat->fam.noise + heat->lap->n_active;
-    hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
-    heat->fam.ctx = heat->ctx;
-    heat->fam.lap = heat->lap;
-    heat->fam.up = &heat->up;
-    heat->fam.weight = heat->weight;
+    fam->ctx = heat->ctx;
+    fam->lap = hdi_precond_ordered(heat->source, heat->ctx, e);
+    if (!fam->lap || hdi_upper_make(&fam->up, &fam->lap->L, heat->ctx, e) < 0) return e->status;
+    fam->weight = hdi_make_weight(fam->lap, heat->ctx, e);
+    if (!fam->weight) return e->status;
+    fam->noise_l = fam->weight + n;
+    fam->noise = fam->noise_l + n;
+    fam->noise_work = fam->noise + n;
+    hdi_noise_weights(fam->lap, 1, 0, fam->noise_l, fam->noise_work);
     return e->status;
-}
-
-/* Does the caller ask for iterations? */
-static int hdi_factors_unasked(const hd_heat *heat) {
-    return heat->iterations_asked && heat->opts.method <= HD_METHOD_ITERATIVE;
 }
 
 /* Did factors not fit the byte limit that holds? */
@@ -17080,24 +17058,28 @@ static hd_status hdi_solve_check(double t, hd_c64 theta, const hd_solve_opts *o,
     return e->status;
 }
 
-/* The right-hand side into the lane by rows, times 2^-*exponent so that its norm, which is returned, keeps
+/* Fails at the first of n values, `each` of them a vertex's, that is not finite. */
+static hd_status hdi_finite_check(const double *x, int64_t n, int32_t each, int64_t column, const char *text,
+                                  hd_error *e) {
+    int64_t i;
+    for (i = 0; i < n; i++)
+        if (!hdi_finite(x[i])) return hdi_fail_row(e, HD_ERR_NOT_FINITE, text, i / each, column, x[i]);
+    return HD_OK;
+}
+
+/* The right-hand side into the lane by rows, times 2^-exponent so that its norm, which is returned, keeps
  * away from the ends of doubles. Its constants go to x: b - B mean(b), and mean(b)/theta. */
-static double hdi_shifted_load(const hd_laplacian *lap, const hdi_family *fam, const hd_c64 *rhs,
-                               hdi_lane *lane, hd_c64 *x, int *exponent, hd_error *e) {
+static double hdi_shifted_load(const hdi_family *fam, const hd_c64 *rhs, hdi_lane *lane, hd_c64 *x) {
+    const hd_laplacian *lap = fam->lap;
     double largest = 0, norm;
-    int32_t i, v;
-    for (v = 0; v < lap->n && e->status >= 0; v++) {
-        if (lap->row[v] >= 0) largest = hdi_max(largest, hdi_max(fabs(rhs[v].re), fabs(rhs[v].im)));
-        if (!hdi_cfinite(rhs[v]))
-            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the right-hand side is not finite", v, -1,
-                         hdi_finite(rhs[v].re) ? rhs[v].im : rhs[v].re);
-    }
-    if (e->status < 0) return 0;
-    frexp(largest, exponent);
+    int32_t i;
     for (i = 0; i < lap->n_active; i++) {
-        const hd_c64 r = rhs[lap->vertex[i]];
-        lane->b[i] = hdi_c(ldexp(r.re, -*exponent), ldexp(r.im, -*exponent));
+        lane->b[i] = rhs[lap->vertex[i]];
+        largest = hdi_max(largest, hdi_max(fabs(lane->b[i].re), fabs(lane->b[i].im)));
     }
+    frexp(largest, &lane->exponent);
+    for (i = 0; i < lap->n_active; i++)
+        lane->b[i] = hdi_c(ldexp(lane->b[i].re, -lane->exponent), ldexp(lane->b[i].im, -lane->exponent));
     norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, lap->n_active));
     hdi_deflate(lap, lane->b, lane->k->mean);
     memset(x, 0, (size_t)lap->n * sizeof *x);
@@ -17107,50 +17089,50 @@ static double hdi_shifted_load(const hd_laplacian *lap, const hdi_family *fam, c
 }
 
 /* What is reported of the solution, which is in k->x. */
-static void hdi_shifted_tell(const hd_heat *heat, double b_norm, hd_solve_report *report) {
-    const hdi_iteration *k = heat->lane->k;
-    const double error = hdi_pole_error(k);
-    const double norm = hdi_b_norm_complex(heat->lap, k->x, heat->lane->tmp) - error;
+static void hdi_shifted_tell(const hdi_lane *lane, double b_norm, hd_solve_report *report) {
+    const hdi_iteration *k = lane->k;
+    const double error = hdi_pole_error(k), norm = hdi_b_norm_complex(k->a.lap, k->x, lane->tmp) - error;
     report->iterations = k->iterations;
-    report->residual = !hdi_finite(b_norm) ? HUGE_VAL : b_norm > 0 ? k->r_norm / b_norm : 0;
-    report->error_b = error == 0 ? 0 : norm > 0 ? error / norm : HUGE_VAL;
+    report->residual = !hdi_finite(b_norm) ? HUGE_VAL : hdi_quotient(k->r_norm, b_norm);
+    report->error_b = hdi_quotient(error, norm);
 }
 
 /* One system with a plan made for it. */
 static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const hd_c64 *rhs, hd_c64 *x,
                                    double tol, hd_solve_report *report, hd_error *e) {
     const hdi_watch watch = {heat->ctx, NULL, 0, 1, "solve"};
+    const int64_t n = 2 * (int64_t)heat->source->n;
+    hdi_family *fam = &heat->fam;
+    hdi_lane *lane;
     hd_rational set;
-    hd_laplacian *lap;
-    hdi_iteration *k;
     hd_status status;
     double b_norm;
-    int32_t i, v;
-    int exponent, unit;
+    int32_t i;
+    int unit;
     memset(&set, 0, sizeof set);
     set.n_poles = 1;
     set.theta[0] = theta;
-    if (hdi_heat_iterative(heat, e) < 0 ||
-        hdi_heat_make_lanes(heat, 1, hdi_lane_room_of(heat->lap, &heat->fam, 0, 1), e) < 0 ||
-        hdi_family_prepare(&heat->fam, &set, t * heat->scale, heat->lane, 1, e) < 0) return e->status;
-    lap = heat->lap;
-    k = heat->lane->k;
-    b_norm = hdi_shifted_load(lap, &heat->fam, rhs, heat->lane, x, &exponent, e);
-    if (e->status < 0) return e->status;
-    hdi_iteration_start(k, b_norm);
-    hdi_iteration_residual(k, heat->lane->b);
-    status = hdi_iteration_run(k, heat->lane->b, tol * b_norm, heat->fam.max_iterations, &watch, e);
-    for (i = 0; i < lap->n_active; i++) x[lap->vertex[i]] = k->x[i] = hdi_cadd(x[lap->vertex[i]], k->x[i]);
-    if (report) hdi_shifted_tell(heat, b_norm, report);
+    if (hdi_finite_check(&rhs->re, n, 2, -1, "solve: a value of the right-hand side is not finite", e) < 0 ||
+        hdi_heat_iterative(heat, e) < 0 ||
+        hdi_heat_make_lanes(heat, 1, hdi_lane_room_of(fam->lap, fam, 0, 1), e) < 0 ||
+        hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e) < 0) return e->status;
+    lane = heat->lane;
+    b_norm = hdi_shifted_load(fam, rhs, lane, x);
+    hdi_iteration_start(lane->k, b_norm);
+    hdi_iteration_residual(lane->k, lane->b);
+    status = hdi_iteration_run(lane->k, lane->b, tol * b_norm, fam->max_iterations, &watch, e);
+    for (i = 0; i < fam->lap->n_active; i++) {
+        hd_c64 *to = x + fam->lap->vertex[i];
+        *to = lane->k->x[i] = hdi_cadd(*to, lane->k->x[i]);
+    }
+    if (report) hdi_shifted_tell(lane, b_norm, report);
     if (status > 0) e->status = status;
     /* the answer is in units of the right-hand side's, times those of B */
     frexp(heat->scale, &unit);
-    for (v = 0; v < lap->n; v++) {
-        x[v] = hdi_c(hdi_scale(x[v].re, unit + exponent - 1), hdi_scale(x[v].im, unit + exponent - 1));
-        if (!hdi_cfinite(x[v]) && e->status >= 0)
-            hdi_fail_row(e, HD_ERR_NOT_FINITE, "solve: a value of the solution is not finite", v, -1,
-                         x[v].re);
-    }
+    unit += lane->exponent - 1;
+    for (i = 0; i < heat->source->n; i++) x[i] = hdi_c(hdi_scale(x[i].re, unit), hdi_scale(x[i].im, unit));
+    if (e->status >= 0)
+        (void)hdi_finite_check(&x->re, n, 2, -1, "solve: a value of the solution is not finite", e);
     return e->status;
 }
 
@@ -17236,8 +17218,7 @@ typedef struct hdi_entry_list {
 /* Rows of an answer that leaves zeros out, added in any order, as are the values of a row. */
 typedef struct hdi_sparse {
     int64_t n, room;
-    double *val;                 /* [room] */
-    int32_t *col;                /* [room] in val's block */
+    hdi_pair *at;                /* [n] of [room] key: the column; id: the bits of the value */
     int64_t *begin, *end;        /* of each row */
     double cut;                  /* what is smaller is left out, relative to the row's largest */
 } hdi_sparse;
@@ -17298,13 +17279,12 @@ typedef struct hdi_heat_call {
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
     const hd_rational *set;      /* instead of what the plan would take */
-    int32_t diagonal, degree;    /* the default set is that of diagonals; its degree, 0: the usual one */
+    int32_t degree;              /* of the default set, 0: the usual one */
     int32_t relative;            /* the report has errors relative to each value too */
     int32_t watching;            /* direct: the lanes keep the source's own entry, see hdi_lane.watch */
     int32_t equal;               /* t is so large that each component has its mean */
     int32_t by_pairs;            /* answers are sums over eigenpairs */
-    const hdi_rim *rim;          /* on a part of the mesh: the part's */
-    const hdi_local *part;       /* that part, where the request is in terms of the whole */
+    const hdi_local *part;       /* on a part of the mesh: that part; the request is in terms of the whole */
     double most;                 /* its answers are stored if they leave out no more than this */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
     const double *left;          /* what the part leaves out of each column of k_t, scaled; NULL: nothing */
@@ -17354,22 +17334,24 @@ static void hdi_elim_renew(hdi_elim *m, const hd_laplacian *lap, int64_t *fill) 
  * stay; what depends on values is made again when it is needed. */
 static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
+    hdi_family *fam = &heat->fam;
     hdi_scope s = hdi_scope_begin(heat->ctx, e);
     int64_t *fill;
     int32_t i;
     if (heat->version == lap->version) return HD_OK;
     fill = HDI_TAKE(&s, int64_t, lap->n_active);
-    if (!fill || hdi_heat_sums(heat, e) < 0) return hdi_scope_end(&s);
+    if (!fill) return hdi_scope_end(&s);
+    if (heat->lane && heat->lane->room.n_components != lap->n_components) hdi_heat_free_lanes(heat);
     hdi_heat_measure_pair(heat);
     if (HDI_HAS_DIRECT && heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, fill);
     if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, fill);
     if (HDI_HAS_DIAGONAL) hdi_ground_free(&heat->ground, heat->ctx);
     if (HDI_HAS_DIRECT && HDI_HAS_MODES) hdi_modes_free(&heat->modes, heat->ctx);
-    if (heat->weight) {
-        hdi_pair_refresh(heat->lap, lap, fill);
-        for (i = 0; i < lap->n_active; i++) heat->weight[i] = 1 / heat->lap->b_diag[i];
-        hdi_noise_weights(heat->lap, 1, 0, heat->noise, heat->fam.noise_work);
-        heat->fam.filled = 0;
+    if (fam->weight) {
+        hdi_pair_refresh(fam->lap, lap, fill);
+        for (i = 0; i < lap->n_active; i++) fam->weight[i] = 1 / fam->lap->b_diag[i];
+        hdi_noise_weights(fam->lap, 1, 0, fam->noise_l, fam->noise_work);
+        fam->filled = 0;
     }
     return hdi_scope_end(&s);
 }
@@ -17490,19 +17472,6 @@ static void hdi_heat_measure(const hd_laplacian *lap, hdi_lane *lane) {
     hdi_component_sums(lap, NULL, lane->rhs, lane->target);
 }
 
-/* Checks all fields, before anything is solved or written. */
-static hd_status hdi_fields_check(const hdi_heat_call *h) {
-    int32_t q, v;
-    for (q = 0; q < h->ask.k; q++) {
-        const double *f = h->ask.F + (size_t)q * h->ask.ldf;
-        for (v = 0; v < h->heat->source->n; v++)
-            if (!hdi_finite(f[v]))
-                return hdi_fail_row(h->e, HD_ERR_NOT_FINITE, "heat: a value of the field is not finite", v,
-                                    q, f[v]);
-    }
-    return HD_OK;
-}
-
 static HDI_NOINLINE hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q) {
     if (h->ask.terms) return h->ask.terms[q];
     return hdi_terms_vertex((int32_t)h->ask.list->order[h->ask.list->begin[q]].key);
@@ -17542,20 +17511,13 @@ static void hdi_lane_moving(const hd_laplacian *lap, hdi_lane *lane) {
     int32_t i, pass;
     if (!lap->conserves) return;
     for (pass = 0; pass < 2; pass++) {
-        hdi_lane_means(lane, lap);
-        for (i = 0; i < lap->n_active; i++) lane->f[i] -= lane->sums[lap->component[i]];
+        hdi_lane_deflate(lane, lap);
         hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         hdi_heat_measure(lap, lane);
     }
     lane->rhs_off = hdi_lane_rhs_off(lap, lane->f) + 2 * DBL_EPSILON * lane->f_norm;
     for (i = 0; i < lap->n_components; i++)
         if (hdi_finite(lap->component_mass[i])) lane->target[i] = 0;
-}
-
-/* Does a column of k_t need only a bound on the norm of B^-1 e, and not B^-1 e itself? */
-static int hdi_lane_bounded(const hdi_heat_call *h) {
-    if (h->by_pairs) return h->lap->b_ratio > 0;
-    return h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0 && h->lap->b_ratio > 0;
 }
 
 /* The pair of the request: the copy at hand, or if that is of a part what the part was taken from. */
@@ -17593,21 +17555,6 @@ static double hdi_lane_terms(const hdi_heat_call *h, const hdi_terms *c, double 
     return norm;
 }
 
-/* rhs = B f for the f of a source. */
-static void hdi_lane_terms_mass(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    int32_t q;
-    int64_t p;
-    memset(lane->rhs, 0, (size_t)lap->n_active * sizeof *lane->rhs);
-    for (q = 0; q < c->n; q++) {
-        const int32_t row = hdi_call_row(h, hdi_terms_at(c, q));
-        if (row < 0) continue;
-        if (!lap->B) lane->rhs[row] = lap->mass[row] * lane->f[row];
-        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
-            lane->rhs[lap->L.col[p]] += lap->B[p] * lane->f[row];
-    }
-}
-
 /* A field into x by rows, scaled by a power of two so that its values are near one. */
 static void hdi_lane_field(const hdi_heat_call *h, const double *f, hdi_lane *lane, double *x) {
     const int32_t n = h->lap->n_active;
@@ -17632,28 +17579,25 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     double *x = given ? lane->f : lane->rhs, sums = c.weight ? (double)c.n * DBL_EPSILON : 0;
     lane->status = HD_OK;
     hdi_lane_clear_off(lane);
-    lane->steps = lane->skip = 0;
-    lane->exponent = 0;
+    lane->steps = lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
     lane->watch = h->watching && !fields && !c.weight ? hdi_call_row(h, c.one) : -1;
     lane->dual = query == HDI_QUERY_ADJOINT;
-    if (fields) {
-        hdi_lane_field(h, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
-    } else {
-        lane->f_norm = hdi_lane_terms(h, &c, x);
-        lane->skip = lane->f_norm == 0;
-        if (lane->skip) return HD_OK;
-        if (!given && hdi_lane_bounded(h)) {
-            memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
-            lane->f_norm *= hdi_ratio_root(lap);
-            hdi_component_sums(lap, NULL, lane->rhs, lane->target);
-            lane->rhs_off = sums * lane->f_norm;
-            return HD_OK;
-        }
+    if (fields) hdi_lane_field(h, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
+    else lane->f_norm = hdi_lane_terms(h, &c, x);
+    lane->skip = !fields && lane->f_norm == 0;
+    if (lane->skip) return HD_OK;
+    /* of a column of k_t a bound on the norm of f = B^-1 e is enough where f itself is not used */
+    if (query == HDI_QUERY_SYMMETRIC && lap->b_ratio > 0 &&
+        (h->by_pairs || (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0))) {
+        memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
+        lane->f_norm *= hdi_ratio_root(lap);
+        hdi_component_sums(lap, NULL, lane->rhs, lane->target);
+        lane->rhs_off = sums * lane->f_norm;
+        return HD_OK;
     }
     if (given) {
-        if (fields) hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
-        else hdi_lane_terms_mass(h, &c, lane);
+        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
         if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, HDI_MASS_STOP, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
@@ -17685,26 +17629,16 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         const hdi_pair at = list->order[p];
         const int32_t v = list->rows[at.id], row = hdi_call_row(h, v), beyond = row == HDI_ROW_BEYOND;
         hdi_parts off = {0, 0, 0, 0};
-        values[at.id] = row >= 0 && !lane->skip ? unit * lane->u[row] : 0;
-        if (row == HD_ROW_INERT)
-            values[at.id] = h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
+        values[at.id] = row == HD_ROW_INERT && h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
         if ((row >= 0 || beyond) && !lane->skip) {
             const double b = beyond ? h->heat->scale * whole->b_diag[whole->row[v]] : lap->b_diag[row];
+            values[at.id] = beyond ? 0 : unit * lane->u[row];
             off = h->by_pairs ? lane->off_value
                   : hdi_parts_scale(unit * hdi_ratio_root(lap) / sqrt(b), lane->off);
         }
         if (h->by_pairs || hdi_parts_sum(&off) > 0) off.rounding += HDI_FAINT;
         hdi_ledger_note(list->ledger + h->now, values[at.id], off);
     }
-}
-
-/* What K_t leaves at the vertices without mass of source q. */
-static void hdi_heat_store_inert(const hdi_heat_call *h, int32_t q, double *u) {
-    const hdi_terms c = hdi_heat_source(h, q);
-    int32_t i;
-    for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
-        if (hdi_call_row(h, hdi_terms_at(&c, i)) == HD_ROW_INERT)
-            u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
 }
 
 /* Fails where the answer at a vertex is so large that it leaves the range of doubles. */
@@ -17724,13 +17658,11 @@ static void hdi_heat_store_sparse(const hdi_heat_call *h, int32_t q, const hdi_l
     int32_t i;
     if (to->n + n + c.n > to->room) {
         const int64_t room = 2 * to->n + n + c.n;
-        double *val = HDI_NEW(ctx, double, (room + room / 2 + 1), h->e);
-        if (!val) return;
-        if (to->n > 0) memcpy(val, to->val, (size_t)to->n * sizeof *val);
-        if (to->n > 0) memcpy(val + room, to->col, (size_t)to->n * sizeof *to->col);
-        hdi_free(ctx, to->val);
-        to->val = val;
-        to->col = (int32_t *)(void *)(val + room);
+        hdi_pair *at = HDI_NEW(ctx, hdi_pair, room, h->e);
+        if (!at) return;
+        if (to->n > 0) memcpy(at, to->at, (size_t)to->n * sizeof *at);
+        hdi_free(ctx, to->at);
+        to->at = at;
         to->room = room;
     }
     to->begin[row] = to->n;
@@ -17741,8 +17673,8 @@ static void hdi_heat_store_sparse(const hdi_heat_call *h, int32_t q, const hdi_l
         if (i >= n && (h->ask.query != HDI_QUERY_OPERATOR || hdi_call_row(h, v) != HD_ROW_INERT)) continue;
         if (hdi_fail_range(h->e, v, value) < 0) return;
         if (value == 0 || (i < n && fabs(value) < to->cut * most)) continue;
-        to->col[to->n] = v;
-        to->val[to->n++] = value;
+        to->at[to->n].key = (uint64_t)v;
+        memcpy(&to->at[to->n++].id, &value, sizeof value);
     }
     to->end[row] = to->n;
 }
@@ -17762,9 +17694,12 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         if (u != f) memmove(u, f, (size_t)whole->n * sizeof *u);
-    } else {
+    } else {                                     /* and so they do in columns of K_t */
+        const hdi_terms c = hdi_heat_source(h, q);
         memset(u, 0, (size_t)whole->n * sizeof *u);
-        hdi_heat_store_inert(h, q, u);
+        for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
+            if (hdi_call_row(h, hdi_terms_at(&c, i)) == HD_ROW_INERT)
+                u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
     }
     for (i = 0; i < whole->n && (whole->n_held > 0 || h->rate || h->part); i++)
         if (h->rate || whole->row[i] == HD_ROW_HELD || (h->part && whole->row[i] >= 0)) u[i] = 0;
@@ -17782,8 +17717,9 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
     hd_heat *heat = h->heat;
     h->n_lanes = hdi_low32(h->ask.k, most);
-    if (heat->drift < 0) heat->drift = hdi_heat_drift(heat->source, heat->sums) / heat->scale;
-    return hdi_heat_make_lanes(heat, h->n_lanes, room, h->e);
+    if (hdi_heat_make_lanes(heat, h->n_lanes, room, h->e) >= 0 && heat->drift < 0)
+        heat->drift = hdi_heat_drift(heat->source, (hdi_sum *)(void *)heat->lane->target) / heat->scale;
+    return h->e->status;
 }
 
 /* ---- the pole set of a call ---- */
@@ -17795,23 +17731,22 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
 /* The degree of a uniform set for all fields. Odd ones cost as much as the next even one; but the direct
  * method has a pack and a real factor for 9, which may have twice that share. Columns, whose constants are
  * small, get the highest one. */
-static hd_status hdi_heat_degree(hdi_heat_call *h, int32_t *degree) {
-    const int direct = h->method == HD_METHOD_DIRECT, fields = hdi_query_fields(h->ask.query);
+static int32_t hdi_heat_degree(hdi_heat_call *h) {
+    const int direct = h->method == HD_METHOD_DIRECT;
+    int32_t q, degree = 8;
     hd_rational set;
-    int32_t q;
-    *degree = fields ? 8 : HDI_RAT_UNIFORM_MAX;
-    if (fields && hdi_heat_lanes(h, 1, 0, 0) < 0) return h->e->status;
-    for (q = 0; q < h->ask.k && fields; q++) {
-        const hdi_lane *lane = h->heat->lane;
+    if (!hdi_query_fields(h->ask.query) || hdi_heat_lanes(h, 1, 0, 0) < 0) return HDI_RAT_UNIFORM_MAX;
+    for (q = 0; q < h->ask.k; q++) {
+        hdi_lane *lane = h->heat->lane;
         double most;
-        if (hdi_heat_load(h, h->ask.first + q, h->heat->lane) < 0) return h->e->status;
+        if (hdi_heat_load(h, h->ask.first + q, lane) < 0) break;
         most = (direct ? 2 : 1) * HDI_UNIFORM_SHARE * sqrt(hdi_lane_means_norm2(lane, h->lap));
-        while (*degree < HDI_RAT_UNIFORM_MAX &&
-               hdi_rational_get(&set, HD_POLES_UNIFORM, *degree, h->e) >= 0 &&
+        while (degree < HDI_RAT_UNIFORM_MAX &&
+               hdi_rational_get(&set, HD_POLES_UNIFORM, degree, h->e) >= 0 &&
                !(set.max_error * lane->f_norm <= most))
-            *degree = !direct ? *degree + 2 : *degree == 8 ? 9 : HDI_RAT_UNIFORM_MAX;
+            degree = !direct ? degree + 2 : degree == 8 ? 9 : HDI_RAT_UNIFORM_MAX;
     }
-    return HD_OK;
+    return degree;
 }
 
 /* The pole set of this call. degree: where nothing else says which. */
@@ -17834,36 +17769,33 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     const hd_heat *heat = h->heat;
     const int asked = h->set || heat->opts.rational || heat->opts.degree || hdi_exacting(heat);
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
-    if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES &&
-        hdi_heat_degree(h, &degree) < 0) return h->e->status;
-    return hdi_heat_set_of(h, degree, set);
+    if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES)
+        degree = hdi_heat_degree(h);
+    return h->e->status < 0 ? h->e->status : hdi_heat_set_of(h, degree, set);
 }
 
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
     const hd_heat *heat = h->heat;
     hdi_lane *lane = h->heat->lane + index;
-    const hdi_lanczos_task task = {heat->lap, heat->weight, heat->noise, h->t, heat->opts.tol, heat->drift,
-                                   heat->opts.max_iterations, h->rate};
+    const hdi_lanczos_task task = {heat->fam.lap, heat->fam.weight, heat->fam.noise_l, h->t, heat->opts.tol,
+                                   heat->drift, heat->opts.max_iterations, h->rate};
     const double share = 1.0 / h->ask.k;
     const hdi_watch watch = {worker == 0 ? heat->ctx : NULL, &h->stop, share * (double)(h->batch + index),
                              share, "solve"};
     hdi_error_clear(&lane->error);
     if (lane->skip) return;
-    lane->status = hdi_watch_look(&watch, 0, &lane->error);
-    if (lane->status >= 0) {
-        lane->status = h->solver == HD_SOLVER_LANCZOS
-                       ? hdi_lanczos_run(&task, lane, &watch, &lane->error)
-                       : hdi_family_run(&h->heat->fam, task.tol, task.t * task.drift, lane, &watch,
-                                        &lane->error);
-    }
+    if (hdi_watch_look(&watch, 0, &lane->error) < 0) lane->status = lane->error.status;
+    else if (h->solver == HD_SOLVER_LANCZOS)
+        lane->status = hdi_lanczos_run(&task, lane, &watch, &lane->error);
+    else lane->status = hdi_family_run(&heat->fam, task.tol, task.t * task.drift, lane, &watch, &lane->error);
     if (lane->status < 0) HDI_STORE(&h->stop, 1);
 }
 
 /* ---- errors of answers ---- */
 
-/* A new ledger for what the method computes. Each lane says how its rounding is known. */
-static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
+/* A new ledger for a lane's answer by the method. The lane says how its rounding is known. */
+static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h, const hdi_lane *lane) {
     const int poles = h->solver != HD_SOLVER_LANCZOS;   /* which krylov is, too */
     const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
@@ -17871,9 +17803,9 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h) {
     const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
-    hdi_ledger ledger = hdi_ledger_begin(rational, solver, HD_EVIDENCE_NONE, 0);
-    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_NONE, 0);
-    ledger.evidence.local = !h->rim ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
+    hdi_ledger ledger = hdi_ledger_begin(rational, solver, lane->rounding, 0);
+    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, lane->rounding, 0);
+    ledger.evidence.local = !h->part ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
     return ledger;
 }
 
@@ -17892,11 +17824,15 @@ static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *
 }
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
- * it is zero: by the B norm, and by the norm of M = B + tL where reach is known. A zero of the answer says
- * nothing of its own error: rows that the steps of an iteration have not reached are exact zeros. reach: a
- * bound of diag(M^-1), or NULL. A dual lane answers with B u, where |(B d)_v| is at most sqrt(B_vv) times |d|
+ * it is zero: by the B norm, and by the norm of M = B + tL where a bound of diag(M^-1), reach, is known. A
+ * zero of the answer says nothing of its own error: rows that the steps of an iteration have not reached are
+ * exact zeros. A dual lane answers with B u, where |(B d)_v| is at most sqrt(B_vv) times |d|
  * in both norms, for B M^-1 B <= B. */
-static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, const double *reach) {
+static hdi_parts hdi_lane_bound(const hdi_heat_call *h, const hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    const hdi_elim *m = &h->heat->elim;
+    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
+    const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
     double smallest_b = HUGE_VAL, largest_b = 0, largest_g = 0, *touched = lane->spare_sums, by_b, by_m;
     int32_t i, any = 0;
     memset(touched, 0, (size_t)lap->n_components * sizeof *touched);
@@ -17916,12 +17852,11 @@ static hdi_parts hdi_lane_bound(const hd_laplacian *lap, const hdi_lane *lane, c
 
 /* Adds the numbers of one field to the report, which keeps the worst. ledger: a new one; of entries, whose
  * values are noted elsewhere, it is not used. */
-static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_ledger *ledger,
-                           const double *reach) {
+static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_ledger *ledger) {
     const hd_laplacian *lap = h->lap;
     const double *out = hdi_lane_answer(lane), least = ldexp(HDI_FAINT / hdi_heat_unit(h), -lane->exponent);
     double largest = 0, heat = 0, heat_in = 0, heat_abs = 0, spread = 0, total = hdi_parts_sum(&lane->off);
-    const int part = h->rim && h->rim->conserves;
+    const int part = h->part && h->part->rim.conserves;
     hd_report *rep = h->rep;
     int32_t i;
     for (i = 0; i < lap->n_active; i++) {
@@ -17934,7 +17869,7 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
     for (i = 0; i < lap->n_components; i++)
         if (part ? !h->rate : hdi_finite(lap->component_mass[i])) heat_in += lane->target[i];
     if (!h->ask.list || h->part) {
-        hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(lap, lane, reach);
+        hdi_parts off = h->by_pairs && !lane->dual ? lane->off_value : hdi_lane_bound(h, lane);
         /* of the value itself; an adjoint is divided by B and multiplied by it, even at t = 0 */
         if (lane->f_norm > 0 && (total > 0 || lane->dual || h->by_pairs))
             off.rounding += (lane->dual ? 2 : 1) * DBL_EPSILON * largest + least;
@@ -17952,27 +17887,11 @@ static void hdi_heat_judge(const hdi_heat_call *h, const hdi_lane *lane, hdi_led
         rep->mass_drift = hdi_max(rep->mass_drift, hdi_bound_of(fabs(heat - heat_in) / heat_abs));
 }
 
-/* Judges lane i of the batch. */
-static void hdi_heat_note(hdi_heat_call *h, hdi_ledger ledger, int32_t i) {
-    hdi_lane *lane = h->heat->lane + i;
-    const hdi_elim *m = &h->heat->elim;
-    const int solved = h->method == HD_METHOD_DIRECT && h->t > 0 && !h->equal && !h->by_pairs;
-    const double *reach = solved && m->resolvent && m->resolvent_t == m->t ? m->resolvent : NULL;
-    int32_t q;
-    ledger.evidence.rounding = lane->rounding;
-    if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
-    hdi_heat_judge(h, lane, &ledger, reach);
-    if (h->ask.list) h->ask.list->ledger[h->now].evidence = ledger.evidence;
-    for (q = 0; q < h->n_off; q++)
-        h->off[(h->batch + i) * h->n_off + q] = hdi_column_off(h->lap, lane, h->set + q);
-}
-
 /* Report and errors of the lanes, in their order. The first failure is reported, unless it only says that
  * another task failed. */
 static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     const hd_rational *set = &h->heat->fam.set;
     const int poles = h->method == HD_METHOD_ITERATIVE && h->solver != HD_SOLVER_LANCZOS;
-    const hdi_ledger blank = hdi_heat_ledger(h);
     int32_t i, p;
     for (i = 0; i < n; i++) {
         const hdi_lane *lane = h->heat->lane + i;
@@ -17983,7 +17902,8 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
     if (h->e->status == HD_ERR_NOT_CONVERGED) h->rep->residual = h->e->value;   /* what was achieved */
     if (h->e->status < 0) return h->e->status;
     for (i = 0; i < n; i++) {
-        const hdi_lane *lane = h->heat->lane + i;
+        hdi_lane *lane = h->heat->lane + i;
+        hdi_ledger ledger = hdi_heat_ledger(h, lane);
         if (lane->skip) {                        /* exact */
             if (!h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
             continue;
@@ -17994,7 +17914,11 @@ static hd_status hdi_heat_collect(hdi_heat_call *h, int32_t n) {
             h->rep->pole_iterations[p] += lane->k[p].iterations;
             h->rep->iterations += lane->k[p].iterations;
         }
-        hdi_heat_note(h, blank, i);
+        if (lane->dual) hdi_pair_apply(h->lap, 0, 1, lane->u, lane->tmp);
+        hdi_heat_judge(h, lane, &ledger);
+        if (h->ask.list) h->ask.list->ledger[h->now].evidence = ledger.evidence;
+        for (p = 0; p < h->n_off; p++)
+            h->off[(h->batch + i) * h->n_off + p] = hdi_column_off(h->lap, lane, h->set + p);
     }
     return HD_OK;
 }
@@ -18060,30 +17984,15 @@ static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost 
     int32_t q;
     (void)least;
     c->possible = 1;
-    if (!heat->weight) c->seconds += HDI_ROW_ANALYSIS / 2 * n;
     for (q = 0; q < h->n_times; q++)
         hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, k, c);
     c->bytes = 8.0 * hdi_low32(k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
-    if (!heat->lap) c->bytes += nnz * (lap->B ? 20 : 12) + 36 * n + 4.0 * lap->n;
-    if (!heat->weight) c->bytes += 8 * n + 4 * (nnz - n) / 2 + 32 * n;
+    if (!heat->fam.weight) {
+        c->seconds += HDI_ROW_ANALYSIS / 2 * n;
+        c->bytes += nnz * (lap->B ? 22 : 14) + 74 * n + 4.0 * lap->n;
+    }
     c->bytes += 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + o->precond, lap->n_active,
                                                                (int64_t)(nnz - n) / 2);
-}
-
-/* Makes the lanes, the pole set and its preconditioners. */
-static hd_status hdi_iterative_prepare(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    /* without a bound on the eigenvalues nothing is known of the steps */
-    const int known = heat->source->b_ratio > 0;
-    const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
-    hd_rational set;
-    if (h->solver == HD_SOLVER_LANCZOS) return hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0);
-    if (hdi_heat_set(h, &set) < 0) return h->e->status;
-    hdi_report_set(h->rep, &set);
-    if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
-        hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
-    if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
-    return HD_OK;
 }
 
 /* Runs all items of the call, as many at a time as there are lanes. solve answers n of them, which are
@@ -18107,7 +18016,21 @@ static void hdi_iterative_solve(hdi_heat_call *h, int32_t n, void *arg) {
 }
 
 static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
-    return hdi_iterative_prepare(h) < 0 ? h->e->status : hdi_heat_items(h, hdi_iterative_solve, NULL);
+    hd_heat *heat = h->heat;
+    /* without a bound on the eigenvalues nothing is known of the steps */
+    const int known = heat->source->b_ratio > 0;
+    const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
+    hd_rational set;
+    if (h->solver == HD_SOLVER_LANCZOS) {
+        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0) < 0) return h->e->status;
+    } else {
+        if (hdi_heat_set(h, &set) < 0) return h->e->status;
+        hdi_report_set(h->rep, &set);
+        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
+            hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
+        if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
+    }
+    return hdi_heat_items(h, hdi_iterative_solve, NULL);
 }
 
 /* ---- direct ---- */
@@ -18121,7 +18044,7 @@ typedef struct hdi_batches {
     hdi_heat_call *h;
     int32_t width, count, n;     /* n: items in lanes */
     int32_t deflated;            /* right-hand sides are without their constants */
-    uint64_t doubles;            /* of a batch's arrays */
+    uint64_t doubles, x;         /* of a batch's arrays, and of the first of them */
     int32_t inside;              /* batches whose arrays are where the first pack's update matrices were */
     uint64_t fresh;              /* doubles of the other batches' arrays, which are in the plan */
 } hdi_batches;
@@ -18132,10 +18055,9 @@ static hdi_batches hdi_batches_of(const hdi_elim *m, int32_t packs, int32_t k) {
     const uint64_t n = (uint64_t)m->sym.n, most = 8 * (uint64_t)m->sym.stored;
     const uint64_t spare = packs > 0 ? HDI_PACK * (uint64_t)m->sym.work : 0;
     hdi_batches b;
-    uint64_t x;
     memset(&b, 0, sizeof b);
     b.width = hdi_low32(k, HDI_LANES_BATCH);
-    b.doubles = (hdi_batch_size(m, b.width, &x) + 7) / 8 * 8;
+    b.doubles = (hdi_batch_size(m, b.width, &b.x) + 7) / 8 * 8;
     b.count = hdi_low32((k - 1) / b.width + 1, HDI_BATCHES);
     if (!m->ctx->parallel_for) b.count = hdi_low32(b.count, hdi_context_width(m->ctx));
     while (b.count > 1 && (uint64_t)b.count * (b.doubles + 7 * n * (uint64_t)b.width) > most) b.count--;
@@ -18204,7 +18126,7 @@ static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *s
 static void hdi_direct_cost(hdi_heat_call *h, double least, hd_cost *c) {
     hd_rational set;
     (void)least;
-    if (hdi_factors_unasked(h->heat) || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
+    if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
     hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
     c->seconds = c->seconds * h->n_times + hdi_heat_fill(h->heat, &h->heat->elim).analysis;
@@ -18229,8 +18151,7 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
         need = hdi_batches_need(h->heat, hdi_set_packs(&set), solves ? h->ask.k : 1);
         need = hdi_elim_need(m, &set, after, n_sets, need, h->e);
         if (h->e->status < 0 ||
-            hdi_need(h->heat->ctx, need, solves ? "factors of the poles and solves"
-                                                : "factors of the poles and their inversion", h->e) < 0)
+            hdi_need(h->heat->ctx, need, "factors of the poles, and solves or their inversion", h->e) < 0)
             return h->e->status;
     }
     if (hdi_elim_poles(m, &set, h->t, h->e) < 0) return h->e->status;
@@ -18243,48 +18164,26 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
     return HD_OK;
 }
 
-/* Makes room for the batches: lanes, and arrays in the plan. */
-static hd_status hdi_batches_make(hdi_batches *b, hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    *b = hdi_batches_of(&heat->elim, heat->elim.n_used, h->ask.k);
-    b->h = h;
-    if (hdi_heat_lanes(h, b->count * b->width, 0, 0) < 0 || heat->batch_doubles >= b->fresh)
-        return h->e->status;
-    hdi_free(heat->ctx, heat->batch_room);
-    heat->batch_doubles = 0;
-    heat->batch_room = HDI_NEW(heat->ctx, double, b->fresh, h->e);
-    if (heat->batch_room) heat->batch_doubles = b->fresh;
-    return h->e->status;
-}
-
-/* The arrays of one batch. */
-static hdi_batch hdi_batches_get(const hdi_batches *b, int64_t index) {
-    const hdi_elim *m = &b->h->heat->elim;
-    hdi_batch one;
-    uint64_t x;
-    (void)hdi_batch_size(m, b->width, &x);
-    if (index < b->inside) one.x = m->pack->work + b->doubles * (size_t)index;
-    else one.x = b->h->heat->batch_room + b->doubles * (size_t)(index - b->inside);
-    one.work = one.x + x;
-    one.active = (char *)(void *)(one.x + b->doubles) - m->sym.n_super - 8;
-    one.rim = b->h->rim;
-    return one;
-}
-
 static void hdi_batches_task(void *arg, int64_t index, int32_t worker) {
     const hdi_batches *b = (const hdi_batches *)arg;
     const hdi_heat_call *h = b->h;
     const hd_heat *heat = h->heat;
-    const hdi_batch batch = hdi_batches_get(b, index);
+    const hdi_elim *m = &heat->elim;
     hdi_lane *lane = h->heat->lane + index * b->width;
     const int32_t n = hdi_low32(b->n - (int32_t)index * b->width, b->width);
+    hdi_batch one;
     int32_t r;
     (void)worker;
-    hdi_batch_run(&heat->elim, &batch, lane, n, b->count > 1 ? NULL : heat->ctx);
+    if (index < b->inside) one.x = m->pack->work + b->doubles * (size_t)index;
+    else one.x = heat->batch_room + b->doubles * (size_t)(index - b->inside);
+    one.work = one.x + b->x;
+    one.active = (char *)(void *)(one.x + b->doubles) - m->sym.n_super - 8;
+    one.rim = h->part ? &h->part->rim : NULL;
+    hdi_batch_run(m, &one, lane, n, b->count > 1 ? NULL : heat->ctx);
     for (r = 0; r < n; r++) {
         if (lane[r].skip) continue;
-        if (b->deflated) hdi_batch_extra_means(&heat->elim, lane + r);
-        hdi_lane_finish(heat->elim.lap, &heat->elim.set, h->t * heat->drift, b->deflated, lane + r);
+        if (b->deflated) hdi_batch_extra_means(m, lane + r);
+        hdi_lane_finish(m->lap, &m->set, h->t * heat->drift, b->deflated, lane + r);
         lane[r].status = lane[r].negative ? hdi_not_semidefinite(&lane[r].error)
             : lane[r].off.rounding <= heat->limit * (lane[r].u_norm - lane[r].off.rounding)
             ? HD_OK : HD_WARN_ACCURACY;
@@ -18307,11 +18206,20 @@ static void hdi_direct_solve(hdi_heat_call *h, int32_t n, void *arg) {
 
 static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    const int bound = !h->diagonal && !h->rim;   /* that of a part bounds nothing */
+    const int bound = !h->set && !h->part;       /* that of a part bounds nothing */
     hdi_batches b;
     if (hdi_direct_factors(h, bound ? HDI_AFTER_BOUND : HDI_AFTER_SOLVES, 0) < 0) return h->e->status;
     if (HDI_HAS_DIAGONAL && bound && hdi_elim_bound(&heat->elim, h->e) < 0) return h->e->status;
-    if (hdi_batches_make(&b, h) < 0) return h->e->status;
+    b = hdi_batches_of(&heat->elim, heat->elim.n_used, h->ask.k);
+    b.h = h;
+    if (hdi_heat_lanes(h, b.count * b.width, 0, 0) < 0) return h->e->status;
+    if (heat->batch_doubles < b.fresh) {
+        hdi_free(heat->ctx, heat->batch_room);
+        heat->batch_doubles = 0;
+        heat->batch_room = HDI_NEW(heat->ctx, double, b.fresh, h->e);
+        if (!heat->batch_room) return h->e->status;
+        heat->batch_doubles = b.fresh;
+    }
     b.deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
     return hdi_heat_items(h, hdi_direct_solve, &b);
 }
@@ -18410,7 +18318,7 @@ static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c)
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
     (void)least;
-    if (heat->poles_asked || hdi_factors_unasked(heat)) return;
+    if (heat->poles_asked) return;
     c->possible = 1;
     hdi_fill_cost(f, 1, w.n - ready, steps, wide > 1, c);
     c->seconds += f.analysis + h->n_times * steps / w.n * 8 * f.n / HDI_RATE_BYTES;
@@ -18428,7 +18336,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     double fixed[HDI_WIDE];
     int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
-    if (h->rim && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
+    if (h->part && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
     z->k = n;
@@ -18439,25 +18347,25 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     z->g = h->m->shift;
     for (i = 0; i < n; i++)
         fixed[i] = heat->lane[i].skip ? 0 : hdi_lane_means_norm2(heat->lane + i, h->lap);
-    return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    (void)hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    for (i = 0; i < n; i++) h->rep->iterations += hdi_high32(z->done[i], 0);
+    return h->e->status;
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps are in the
- * report already. */
-static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
-                                  int counted, hd_status status) {
+/* The answers of n items at time q, whose sums are in place p and after in a. */
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a,
+                                  int32_t p) {
     const hd_heat *heat = h->heat;
     const size_t bytes = (size_t)h->lap->n_active * sizeof *h->heat->lane->u;
     hdi_krylov *z = heat->krylov;
     int32_t i;
     for (i = 0; i < n; i++) {
         hdi_lane *lane = h->heat->lane + i;
-        lane->status = status;
+        lane->status = HD_OK;
         if (lane->skip) continue;
         if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
         hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e);
         if (h->e->status < 0) return h->e->status;
-        if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
     }
@@ -18466,7 +18374,7 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
 }
 
 /* The answers of n items at the times [q0, q1), from their basis: each pass as many as a sum has places. */
-static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1, hd_status status) {
+static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_context *ctx = h->heat->ctx;
     hdi_krylov *z = h->heat->krylov;
     const int64_t rows = h->lap->n_active;
@@ -18490,7 +18398,7 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
         }
         hdi_krylov_sum_run(z, &a, ctx);
         for (p = 0; p < n_here; p++)
-            if (hdi_krylov_store(h, n, q + p, &a, p, q + p > q0, status) < 0) return h->e->status;
+            if (hdi_krylov_store(h, n, q + p, &a, p) < 0) return h->e->status;
     }
     return HD_OK;
 }
@@ -18532,43 +18440,35 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
     return 1;
 }
 
-/* n items at all times. Windows after the first begin with the last answers of the one before,
+/* The items, a few at a time. Windows of times after the first begin with the last answers of the one before,
  *   exp(-t B^-1 L) f = exp(-(t - s) B^-1 L) exp(-s B^-1 L) f,
  * which are smooth: the basis needs half as many steps. Where answers die away and what is handed on is not
  * exact enough, or answers are derivatives, a window begins with the fields. */
-static hd_status hdi_krylov_items(hdi_heat_call *h, int32_t n, int32_t n_windows) {
-    int32_t q0, q1, w, goes_on;
-    for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
-        hd_status status;
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
-        goes_on = w > 0 && !h->rate && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
-        if (h->e->status >= 0) hdi_krylov_begin(h, n, goes_on ? h->times[q0 - 1] : 0);
-        if (h->e->status < 0) return h->e->status;
-        status = hdi_krylov_basis(h, n, q0, q1);
-        if (status < 0 || hdi_krylov_answers(h, n, q0, q1, status) < 0) return h->e->status;
-    }
-    return HD_OK;
-}
-
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
     const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
     hdi_krylov *z = heat->krylov;
-    int32_t n;
+    int32_t n, w, q0, q1, goes_on;
     if (z && (z->wide != wide || z->m != h->m)) hdi_krylov_free(z, heat->ctx);
     if (!z) z = heat->krylov = (hdi_krylov *)hdi_alloc_zero(heat->ctx, 1, sizeof *z, h->e);
     if (!z) return h->e->status;
     z->wide = wide;
     z->m = h->m;
     z->rate = h->rate;
-    z->rim = h->rim;
+    z->rim = h->part ? &h->part->rim : NULL;
     z->dual = h->ask.query == HDI_QUERY_ADJOINT;
     z->inverse = z->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
-        if (hdi_krylov_items(h, n, n_windows) < 0) return h->e->status;
+        for (w = 0, q0 = 0; q0 < h->n_times; w++, q0 = q1) {
+            q1 = hdi_window_end(h->times, h->n_times, q0, w, n_windows);
+            goes_on = w > 0 && !h->rate && hdi_krylov_goes_on(h, n, h->times[q1 - 1]);
+            hdi_krylov_begin(h, n, goes_on ? h->times[q0 - 1] : 0);
+            if (h->e->status < 0 || hdi_krylov_basis(h, n, q0, q1) < 0 ||
+                hdi_krylov_answers(h, n, q0, q1) < 0) return h->e->status;
+        }
     }
     hdi_report_factor(h->rep, &h->m->sym, &h->m->shifted, 1);
     return h->e->status;
@@ -18626,7 +18526,6 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
     hd_context *ctx = heat->ctx;
     heat->source = lap;
     if (heat->opts.rational && hdi_heat_take_sets(heat, 1, heat->opts.rational, e) < 0) return e->status;
-    if (hdi_heat_sums(heat, e) < 0) return e->status;
     hdi_heat_measure_pair(heat);
     if (heat->opts.ordering == HD_ORDERING_OWN && hdi_order_check(heat->opts.perm, lap->n, ctx, e) >= 0)
         heat->perm = HDI_NEW(ctx, int32_t, lap->n, e);
@@ -18850,7 +18749,6 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
 static void hdi_local_drop(hdi_local *l) {
     hd_context *ctx = l->heat.ctx;
     hdi_heat_free_factors(&l->heat);
-    hdi_free(ctx, l->heat.sums);
     hdi_free(ctx, l->heat.sets);
     memset(&l->heat, 0, sizeof l->heat);
     l->heat.ctx = ctx;
@@ -18991,7 +18889,6 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     times = HDI_TAKE(&in.s, double, h->n_times);
     if (in.e->status < 0) return hdi_heat_end(&in);
     in.part = l;
-    in.rim = &l->rim;
     in.most = most;
     in.rate = h->rate;
     in.ask = h->ask;
@@ -19164,10 +19061,11 @@ static const hdi_engine hdi_engines[HD_METHOD_LOCAL + 1] = {
 
 /* What each method would take, in by [HD_METHOD_LOCAL + 1]. h->t is the last of its times. */
 static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
+    const int last = h->heat->iterations_asked ? HD_METHOD_ITERATIVE : HD_METHOD_LOCAL;
     double least = HUGE_VAL;
     int q;
     memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
-    for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL && h->e->status >= 0; q++) {
+    for (q = HD_METHOD_ITERATIVE; q <= last && h->e->status >= 0; q++) {
         if (hdi_engines[q].cost) hdi_engines[q].cost(h, least, by + q);
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
         if (by[q].possible) least = hdi_min(least, by[q].seconds);
@@ -19245,7 +19143,7 @@ static HDI_COLD hd_status hdi_heat_engine(hdi_heat_call *h) {
         return h->e->status;
     } else if (HDI_HAS_ITERATIVE && h->method == HD_METHOD_ITERATIVE) {
         if (hdi_heat_iterative(heat, h->e) < 0) return h->e->status;
-        h->lap = heat->lap;
+        h->lap = heat->fam.lap;
     } else if (HDI_HAS_DIRECT && h->method != HD_METHOD_LOCAL) {
         h->m = hdi_heat_analysis(h);
         if (hdi_heat_analysed_in(heat, h->m, h->e) < 0) return h->e->status;
@@ -20010,6 +19908,7 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
 static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int derivative, hd_report *report,
                                 hd_error *err) {
     hdi_heat_call h;
+    int32_t q;
     if (hdi_heat_begin(&h, heat, ask->query, report, err) < 0) return hdi_heat_end(&h);
     h.ask = *ask;
     if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
@@ -20019,7 +19918,10 @@ static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int deriv
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a pole set of your own has no derivative here");
     h.ask.ldf = hdi_leading(&h, ask->ldf);
     h.ask.ldu = hdi_leading(&h, ask->ldu);
-    if (h.e->status < 0 || hdi_fields_check(&h) < 0) return hdi_heat_end(&h);
+    for (q = 0; q < ask->k && h.e->status >= 0; q++)     /* before anything is solved or written */
+        (void)hdi_finite_check(ask->F + (size_t)q * h.ask.ldf, heat->source->n, 1, q,
+                               "heat: a value of the field is not finite", h.e);
+    if (h.e->status < 0) return hdi_heat_end(&h);
     if (ask->U == ask->F && ask->n_times > 1)
         hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: U may be F for one time only");
     else if (h.ask.ldu != h.ask.ldf) (void)hdi_fields_keep(&h);
@@ -20052,23 +19954,15 @@ static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_
 static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t n, hd_csr *out,
                                   hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
-    hdi_pair *order;
     hd_csr a;
-    int64_t r, p, at = 0, longest = 0;
+    int64_t r, p, at = 0;
     if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
-    for (r = 0; r < rows; r++) longest = hdi_most(longest, from->end[r] - from->begin[r]);
-    order = HDI_TAKE(&s, hdi_pair, longest);
     a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
     for (r = 0; r < rows && e->status >= 0; r++) {
-        const int64_t count = from->end[r] - from->begin[r];
-        for (p = 0; p < count; p++) {
-            order[p].key = (uint64_t)from->col[from->begin[r] + p];
-            order[p].id = from->begin[r] + p;
-        }
-        hdi_sort_pairs(order, count);
-        for (p = 0; p < count; p++) {
-            a.col[at] = (int32_t)order[p].key;
-            a.val[at++] = from->val[order[p].id];
+        hdi_sort_pairs(from->at + from->begin[r], from->end[r] - from->begin[r]);
+        for (p = from->begin[r]; p < from->end[r]; p++) {
+            a.col[at] = (int32_t)from->at[p].key;
+            memcpy(a.val + at++, &from->at[p].id, sizeof *a.val);
         }
         a.row_ptr[r + 1] = at;
     }
@@ -20104,7 +19998,7 @@ HEATDIFF_API hd_status hd_heat_columns_sparse(hd_heat *heat, hd_kernel kernel, i
         hdi_bound_judge(h.rep->error_bound, h.rep);
     }
     hdi_free(heat->ctx, to.begin);
-    hdi_free(heat->ctx, to.val);
+    hdi_free(heat->ctx, to.at);
     return hdi_heat_end(&h);
 }
 
@@ -20173,7 +20067,6 @@ static void hdi_heat_free(hd_heat *heat) {
     hdi_heat_free_factors(heat);
     if (HDI_HAS_LOCAL) hdi_local_free(heat);
     hdi_free(ctx, heat->perm);
-    hdi_free(ctx, heat->sums);
     hdi_free(ctx, heat->sets);
     hdi_free(ctx, heat);
     hdi_let_go(ctx);
@@ -20190,7 +20083,6 @@ static void hdi_heat_free(hd_heat *heat) {
 /* What the report says of selected inversion. */
 static void hdi_inverse_tell(hdi_heat_call *h) {
     h->method = h->rep->method = HD_METHOD_DIRECT;
-    h->diagonal = 1;
     h->rep->reason = "selected inversion of the factors of the poles";
     h->rep->ordering = h->heat->elim.sym.ordering;
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
@@ -20217,7 +20109,6 @@ static hd_status hdi_direct_columns(hdi_heat_call *h, const hdi_columns *c) {
         own.ask.k = c->k;
         own.ask.terms = c->terms;
         own.method = HD_METHOD_DIRECT;
-        own.diagonal = 1;
         own.set = c->set;
         own.watching = c->watching;
         own.rows = c->rows;
@@ -21345,7 +21236,6 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
         hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
         in.core = core;
         in.method = HD_METHOD_DIRECT;
-        in.diagonal = 1;
         in.left = left;
         if (hdi_patch_off(x, &in, core, left) >= 0) (void)hdi_diagonals_run(&in, &to);
     }
@@ -21738,17 +21628,17 @@ static double *hdi_metric_sum(const hdi_metric *x, int32_t i, int32_t q, int g) 
 /* The column of a source where only means are left. */
 static void hdi_metric_means(const hdi_metric *x, const hdi_terms *source, double *u) {
     const hd_laplacian *lap = x->h->lap;
-    hdi_sum *share = x->h->heat->sums;
+    double *share = x->work;
     int32_t i, q;
     memset(share, 0, (size_t)lap->n_components * sizeof *share);
     for (q = 0; q < source->n; q++) {
         const int32_t row = lap->row[hdi_terms_at(source, q)];
         if (row < 0) continue;
-        share[lap->component[row]].high += hdi_terms_weight(source, q) *
+        share[lap->component[row]] += hdi_terms_weight(source, q) *
             hdi_by_mass(1 / lap->component_mass[lap->component[row]], lap->mass[row], x->f.mass / 2);
     }
     for (i = 0; i < lap->n_active; i++)
-        u[i] = hdi_by_mass(share[lap->component[i]].high, lap->mass[i], x->f.mass / 2);
+        u[i] = hdi_by_mass(share[lap->component[i]], lap->mass[i], x->f.mass / 2);
 }
 
 /* Makes a sum of K_t e_s, or of k_t, one of f or, with a0 = 0, of the bound g. */
@@ -22693,7 +22583,6 @@ static void hdi_estimate_inverses(const hdi_estimate *x, int32_t early, hd_cost 
     hd_cost one;
     hd_rational set;
     memset(&one, 0, sizeof one);
-    h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
     most = hdi_estimate_most(x);
     if (kind && hdi_degree_open(h->heat) && hdi_distance_sure(h->heat, kind, h->t / x->unit) &&

@@ -1213,7 +1213,6 @@ static void int_patches(void) {
             CHECK(hdi_patch_find(&x, cut[1], cut[2], INT32_MAX) >= 0 && hdi_local_plan(heat, x.local, h.e) >= 0);
             CHECK(hdi_kernel_begin(&in, &x.local->heat, HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0);
             in.method = HD_METHOD_DIRECT;
-            in.diagonal = 1;
             CHECK(hdi_times_check(&in, 2, t, 1) >= 0 && hdi_patch_off(&x, &in, cut[2] - cut[1], sure) >= 0);
             off = sure[0] * x.local->heat.scale;
             CHECK_MSG(off > 1 / lap->component_mass[0], "%s: %g of %g", specs[k], off * lap->component_mass[0], reaches[r]);

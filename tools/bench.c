@@ -183,7 +183,7 @@ static double time_precond(const hdi_precond *m, const hd_c64 *x, hd_c64 *y) {
 }
 
 static void parts_products(hd_heat *heat, double t) {
-    const hd_laplacian *lap = heat->lap;
+    const hd_laplacian *lap = heat->fam.lap;
     const size_t n = (size_t)lap->n_active;
     const double nnz = (double)lap->L.nnz, dn = (double)n;
     double *x = (double *)calloc(4 * n, sizeof *x), *y = x + 2 * n, bytes;
@@ -199,7 +199,7 @@ static void parts_products(hd_heat *heat, double t) {
     bytes = (lap->B ? 20 : 12) * nnz + 8 * (dn + 1) + (lap->B ? 32 : 40) * dn;
     line("(t L + theta B) x, complex", time_system(&a, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y), bytes,
          copy_speed((size_t)bytes));
-    bytes = 20 * (double)heat->up.ptr[n] + 8 * dn + 16 * dn + 32 * dn;
+    bytes = 20 * (double)heat->fam.up.ptr[n] + 8 * dn + 16 * dn + 32 * dn;
     if (heat->fam.filled) {
         const double seconds = time_precond(&heat->lane->k->m, (hd_c64 *)(void *)x, (hd_c64 *)(void *)y);
         line("modified ILDL(0) solve, complex", seconds, 2 * bytes, copy_speed((size_t)bytes));
