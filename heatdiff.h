@@ -14316,15 +14316,11 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
 }
 
-/* Steps to the next look at the bound: half of what a straight line through the logarithms of the last two
- * promises, because convergence speeds up. */
-static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
-                                double target) {
-    const int32_t most = m < 64 ? 1 : m / 32;
-    double want;
-    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
-    want = 0.5 * log(bound / target) / log(bound_before / bound) * (m - m_before);
-    return want < 1 ? 1 : want > most ? most : (int32_t)want;
+/* Steps to the next look at the bound for a start of norm one, which falls like exp(-m^2): half of those that
+ * are missing. */
+static int32_t hdi_lanczos_pace(int32_t m, double bound, double target) {
+    const double want = bound < 1 && target > 0 ? m / 4.0 * log(bound / target) / -log(bound) : m;
+    return want < 1 ? 1 : (int32_t)hdi_min(want, hdi_high32(1, m / 32));
 }
 
 /* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2: the part of
@@ -14335,8 +14331,8 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     const double t = task->t, tol = task->tol;
     hdi_lanczos *z = &lane->lanczos;
     const int32_t most = hdi_low32(task->max_iterations, z->room);
-    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
-    int32_t look = 1, looked = 0, best_m = 0;
+    double bound = 0, best = DBL_MAX, start = 0;
+    int32_t look = 1, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
     if (task->rate) hdi_rational_rate(&set);
@@ -14366,10 +14362,7 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         if (start == 0) start = lane->off.solver;
         if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(start, lane->off.solver, tol * lane->u_norm),
                            e) < 0) return e->status;
-        look = z->m +
-               hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
-        looked = z->m;
-        bound_before = bound;
+        look = z->m + hdi_lanczos_pace(z->m, bound, tol * lane->u_norm / f0_norm);
     }
 }
 
@@ -14432,11 +14425,15 @@ typedef struct hdi_krylov {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
-    double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of answers */
+    /* answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse */
+    int32_t n_sums;
+    double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of each */
+    double *u[HDI_WIDE];         /* [n], or NULL: not wanted */
+    const double *means[HDI_WIDE];   /* [n_components] the constants of each */
     double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
-    double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
+    double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
     int32_t done[HDI_WIDE];      /* steps that were enough, 0: not yet, -1: there are only constants */
     hdi_ritz ritz[HDI_WIDE];     /* of those that are done, with all rows */
     double g;
@@ -14459,7 +14456,6 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     for (i = 0; i <= HDI_KRYLOV_MAX; i++) hdi_free(ctx, z->v[i]);
     for (i = 0; i < HDI_WIDE; i++) hdi_free(ctx, z->ritz[i].mu);
     hdi_free(ctx, z->c);
-    hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
     memset(z, 0, sizeof *z);
 }
@@ -14485,8 +14481,8 @@ static void hdi_krylov_take(hdi_krylov *z, int32_t r, hdi_lane *lane) {
     const hd_laplacian *lap = z->m->lap;
     double norm;
     int64_t i;
-    z->whole[r] = lane->f_norm;
     if (lane->skip) return;
+    z->fixed[r] = hdi_lane_means_norm2(lane, lap);
     hdi_lane_deflate(lane, lap);
     norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, lap->n_active)));
     if (!(norm > DBL_EPSILON * lane->f_norm)) return;
@@ -14503,18 +14499,18 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     const uint64_t n = (uint64_t)z->m->lap->n_active, count = n * (uint64_t)z->wide;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
-    if (z->v[0] && !z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n, e);
-    if (z->c && !z->work) z->work = HDI_NEW(ctx, double, hdi_sweep_size(&z->m->sym, 1, z->wide), e);
+    if (!z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n + hdi_sweep_size(&z->m->sym, 1, z->wide), e);
     if (e->status < 0) return e->status;
     z->w = z->c + count;
     z->probe = z->w + count;
+    z->work = z->probe + 2 * n;
     z->solved = 0;
     z->steps = 0;
     memset(z->v[0], 0, (size_t)count * sizeof *z->c);
     memset(z->c, 0, (size_t)count * sizeof *z->c);
     for (r = 0; r < z->wide; r++) {
         z->done[r] = -1;
-        z->f_norm[r] = z->whole[r] = 0;
+        z->f_norm[r] = z->fixed[r] = 0;
         if (r < z->k) hdi_krylov_take(z, r, lane + r);
     }
     return HD_OK;
@@ -14596,15 +14592,15 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
 
 /* ---- functions of T ---- */
 
-/* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate -x exp(-x),
- * the function of the derivative. Tiny ones are rounding of modes that are gone. */
+/* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate (-x)^rate
+ * exp(-x), the function of the derivatives. Tiny ones are rounding of modes that are gone. */
 #define HDI_KRYLOV_TINY 1e-15
 
 static double hdi_krylov_value(double mu, double tau, int rate) {
     double x;
     if (!(mu > HDI_KRYLOV_TINY)) return tau > 0 || rate ? 0 : 1;
     x = tau * hdi_max(0, 1 / mu - 1);
-    return (rate ? -x : 1) * exp(-x);
+    return (rate > 1 ? x * x : rate ? -x : 1) * exp(-x);
 }
 
 /* T of right-hand side r after the steps so far, with its arrays in room [m (rows + 1)]. */
@@ -14621,7 +14617,8 @@ static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t rows, d
     if (!hdi_lanczos_eigen(&z->alpha[0][r], &z->beta[0][r], HDI_WIDE, s->m, rows, s->mu, off, s->v))
         return hdi_lanczos_failed(e);
     for (i = 0; i < s->m; i++)                   /* 1/(1 + g lambda); of a constant rounding is left */
-        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
+        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] &&
+            z->f_norm[r] * z->f_norm[r] > 1e-16 * z->fixed[r])
             return hdi_not_semidefinite(e);
     return HD_OK;
 }
@@ -14647,72 +14644,56 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
     return sqrt(sum);
 }
 
-/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
- * zeros up to the longest basis. */
-static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, double *y) {
+/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, or
+ * derivative `rate` of it times t^rate, and zeros up to the longest basis. */
+static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, int rate, double *y) {
     const int32_t m = hdi_high32(z->done[r], 0);
     const hdi_ritz *s = z->ritz + r;
     int32_t i;
     memset(y, 0, (size_t)z->steps * sizeof *y);
     for (i = 0; i < m; i++) {
         const double *v = s->v + i * m;
-        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, z->rate), v, y, m);
+        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, rate), v, y, m);
     }
 }
-
-/* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
-typedef struct hdi_krylov_sum {
-    const hdi_krylov *z;
-    int32_t count;
-    const double *y[HDI_WIDE];   /* [steps] coefficients of each */
-    double *u[HDI_WIDE];   /* [n], or NULL: not wanted */
-    const double *means[HDI_WIDE];   /* [n_components] the constants of each */
-} hdi_krylov_sum;
 
 enum { HDI_KRYLOV_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
 /* Rows [begin, end) of all sums, side by side: s [rows][8]. */
-static void hdi_krylov_sum_block(const hdi_krylov_sum *a, int64_t begin, int64_t end,
-                                 double *HDI_RESTRICT s) {
-    const hdi_krylov *z = a->z;
+static void hdi_krylov_sum_block(const hdi_krylov *z, int64_t begin, int64_t end, double *HDI_RESTRICT s) {
     int32_t j, p;
     int64_t i;
     for (j = 0; j < z->steps; j++) {
         const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
         if (z->wide > 1) {
             double y[HDI_WIDE];
-            for (p = 0; p < HDI_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
+            for (p = 0; p < HDI_WIDE; p++) y[p] = p < z->n_sums ? z->y[p][j] : 0;
             for (i = 0; i < end - begin; i++)
                 for (p = 0; p < HDI_WIDE; p++)
                     s[HDI_WIDE * i + p] += y[p] * v[HDI_WIDE * i + p];
         } else {
-            for (p = 0; p < a->count; p++)
-                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += a->y[p][j] * v[i];
+            for (p = 0; p < z->n_sums; p++)
+                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += z->y[p][j] * v[i];
         }
     }
 }
 
+/* u = the constants and the part of the basis, for each answer. */
 static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
-    const hdi_krylov_sum *a = (const hdi_krylov_sum *)arg;
-    const int32_t *component = a->z->m->lap->component;
-    const int64_t row = a->z->wide > 1 ? HDI_WIDE : 1, column = a->z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
+    const hdi_krylov *z = (const hdi_krylov *)arg;
+    const int32_t *component = z->m->lap->component;
+    const int64_t row = z->wide > 1 ? HDI_WIDE : 1, column = z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
     int64_t begin, i;
     int32_t p;
     for (begin = first; begin < last; begin += HDI_KRYLOV_BLOCK) {
         const int64_t end = begin + HDI_KRYLOV_BLOCK < last ? begin + HDI_KRYLOV_BLOCK : last;
         double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK];
         memset(s, 0, sizeof s);
-        hdi_krylov_sum_block(a, begin, end, s);
-        for (p = 0; p < a->count; p++)
-            for (i = begin; i < end && a->u[p]; i++)
-                a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
+        hdi_krylov_sum_block(z, begin, end, s);
+        for (p = 0; p < z->n_sums; p++)
+            for (i = begin; i < end && z->u[p]; i++)
+                z->u[p][i] = z->means[p][component[i]] + s[row * (i - begin) + column * p];
     }
-}
-
-/* u = the constants and the part of the basis, for each answer. */
-static void hdi_krylov_sum_run(const hdi_krylov *z, hdi_krylov_sum *a, hd_context *ctx) {
-    a->z = z;
-    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, a);
 }
 
 /* ---- what answers are off by ---- */
@@ -14782,26 +14763,21 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
     return z->f_norm[r] * sum + most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The norm of w u + dw u' on the rim, in that of B^-1 and relative to |f|_B, at time s after z->from; with
- * rate that of its derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
+/* The norm of w u + dw u' on the rim, in that of B^-1, at time s after z->from; with rate that of its
+ * derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
 static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const double *w, const double *dw) {
-    const int32_t m = z->done[r], n = z->rim->n;
-    double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0}, *rest = &z->rim->rest->re;
+    const double by = s > 0 ? 1 / s : 0;
+    const int32_t n = z->rim->n;
+    double y[HDI_KRYLOV_MAX], dy[HDI_KRYLOV_MAX], *rest = &z->rim->rest->re;
     int32_t i;
-    for (i = 0; i < m; i++) {
-        const double mu = z->ritz[r].mu[i], *v = z->ritz[r].v + (int64_t)i * m;
-        const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
-        const double part = (z->rate ? -lambda : 1) * v[0] * exp(-s * lambda);
-        if (!(mu > HDI_KRYLOV_TINY)) continue;
-        hdi_axpy(part, v, y, m);
-        hdi_axpy(-lambda * part, v, dy, m);
-    }
+    hdi_krylov_coefficients(z, r, s, z->rate, y);
+    hdi_krylov_coefficients(z, r, s, z->rate + 1, dy);
     memset(rest, 0, (size_t)n * sizeof *rest);
-    for (i = 0; i < m; i++) {
+    for (i = 0; i < z->done[r]; i++) {
         hdi_axpy(y[i], w + (int64_t)i * n, rest, n);
-        if (dw) hdi_axpy(dy[i], dw + (int64_t)i * n, rest, n);
+        if (dw) hdi_axpy(by * dy[i], dw + (int64_t)i * n, rest, n);
     }
-    return sqrt(hdi_norm2w(rest, z->rim->weight, n));
+    return sqrt(hdi_norm2w(rest, z->rim->weight, n)) * (z->rate ? by : 1);
 }
 
 enum { HDI_RIM_SAMPLES = 6 };
@@ -14839,9 +14815,9 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     }
     if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL);
     off *= z->rate ? t : 1;
-    if (z->inverse && !(z->from > 0)) off += sqrt(hdi_norm2w(wb, g->weight, g->n));
+    if (z->inverse && !(z->from > 0)) off += z->f_norm[r] * sqrt(hdi_norm2w(wb, g->weight, g->n));
     hdi_free(z->m->ctx, wl);
-    return off * z->f_norm[r] / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
+    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
@@ -14851,18 +14827,15 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
     const int32_t m = z->done[r];
     double most[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
+    lane->off = z->before[r];                    /* K_t makes no error larger */
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     lane->steps = m > 0 ? m : 0;
     if (m > 0) {
         hdi_ritz_most(z->ritz + r, t / z->g, most);
-        lane->off.solver = z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
-        lane->off.rounding = hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
-        if (HDI_HAS_LOCAL && z->rim) lane->off.local = hdi_rim_bound(z, r, t, e);
+        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
+        lane->off.rounding += hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
+        if (HDI_HAS_LOCAL && z->rim) lane->off.local += hdi_rim_bound(z, r, t, e);
     }
-    lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
-    lane->off.solver += z->before[r].solver;
-    lane->off.rounding += z->before[r].rounding;
-    lane->off.local += z->before[r].local;
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
@@ -14876,11 +14849,12 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
 #define HDI_KRYLOV_SHARE 0.25
 #define HDI_KRYLOV_FADES 1e-3
 
-/* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
- * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
+/* The error bound of right-hand side r at the worst of the times, in miss_bound: times what is asked for, and
+ * relative to |f|_B. It ends early where two times miss already. */
 static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
-                                double fixed, double miss_bound[2], hd_error *e) {
-    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
+                                 double miss_bound[2], hd_error *e) {
+    const double before = z->before[r].solver / z->f_norm[r];
+    const double rest = z->fixed[r] / (z->f_norm[r] * z->f_norm[r]);
     double room[3 * HDI_KRYLOV_MAX], most[2];
     hdi_ritz s;
     int32_t q;
@@ -14916,10 +14890,9 @@ static int32_t hdi_krylov_pace(double miss) {
     return steps < 8 ? (int32_t)steps : 8;
 }
 
-/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
- * |constants|_B^2. */
-static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol,
-                               const double *fixed, hd_context *ctx, hd_error *e) {
+/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. */
+static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol, hd_context *ctx,
+                                hd_error *e) {
     double best[HDI_WIDE], now[2], miss_all;
     int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
     hd_status worst = HD_OK;
@@ -14935,7 +14908,7 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
         miss_all = 1;
         for (r = 0; r < z->k; r++) {
             if (z->done[r]) continue;
-            if (hdi_krylov_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
+            if (hdi_krylov_miss(z, r, t, n_times, tol, now, e) < 0) return e->status;
             if (now[0] < best[r] / 2 && z->steps < most) {
                 best[r] = now[0];
                 best_m[r] = z->steps;
@@ -18425,8 +18398,6 @@ static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c)
 static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
     hdi_krylov *z = heat->krylov;
-    double fixed[HDI_WIDE];
-    int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
     if (h->rim && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
@@ -18437,15 +18408,13 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     if (hdi_krylov_start(z, heat->lane, heat->ctx, h->e) < 0 || hdi_elim_shift(h->m, g, h->e) < 0)
         return h->e->status;
     z->g = h->m->shift;
-    for (i = 0; i < n; i++)
-        fixed[i] = heat->lane[i].skip ? 0 : hdi_lane_means_norm2(heat->lane + i, h->lap);
-    return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    return hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, heat->ctx, h->e);
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. counted: their steps are in the
+/* The answers of n items at time q, whose sums are in place p and after. counted: their steps are in the
  * report already. */
-static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a, int32_t p,
-                                  int counted, hd_status status) {
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, int32_t p, int counted,
+                                  hd_status status) {
     const hd_heat *heat = h->heat;
     const size_t bytes = (size_t)h->lap->n_active * sizeof *h->heat->lane->u;
     hdi_krylov *z = heat->krylov;
@@ -18454,8 +18423,8 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         hdi_lane *lane = h->heat->lane + i;
         lane->status = status;
         if (lane->skip) continue;
-        if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
-        hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e);
+        if (z->u[p + i] != lane->u) memcpy(lane->u, z->u[p + i], bytes);
+        hdi_krylov_answer(z, i, h->times[q] - z->from, z->y[p + i], heat->drift, lane, h->e);
         if (h->e->status < 0) return h->e->status;
         if (counted) lane->steps = 0;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
@@ -18471,26 +18440,23 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
     hdi_krylov *z = h->heat->krylov;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
-    hdi_krylov_sum a;
     int32_t p, q, n_here;
-    memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
         z->ahead = HDI_NEW(ctx, double, HDI_WIDE * (uint64_t)rows, h->e);
     if (h->e->status < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_WIDE);
-        a.count = n * n_here;
-        for (p = 0; p < a.count; p++) {
+        z->n_sums = n * n_here;
+        for (p = 0; p < z->n_sums; p++) {
             const hdi_lane *lane = h->heat->lane + (abreast ? p : 0);
             const double t = h->times[abreast ? q : q + p] - z->from;
-            a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
-            a.means[p] = lane->sums;
-            a.y[p] = z->y[p];
-            hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y[p]);
+            z->u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
+            z->means[p] = lane->sums;
+            hdi_krylov_coefficients(z, abreast ? p : 0, t, z->rate, z->y[p]);
         }
-        hdi_krylov_sum_run(z, &a, ctx);
+        hdi_parallel_ranges(ctx, rows, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, z);
         for (p = 0; p < n_here; p++)
-            if (hdi_krylov_store(h, n, q + p, &a, p, q + p > q0, status) < 0) return h->e->status;
+            if (hdi_krylov_store(h, n, q + p, p, q + p > q0, status) < 0) return h->e->status;
     }
     return HD_OK;
 }
