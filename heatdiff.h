@@ -12888,6 +12888,14 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
     return 0;
 }
 
+/* The sum of a row of B, without signs. */
+static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
+    double sum = lap->B ? 0 : lap->b_diag[i];
+    int64_t p;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
+    return sum;
+}
+
 /* Rounding adds to row i of a residual b - (t L + theta B) x at most c_i sum_j M_ij |x_j|, with M = t |L| +
  * |theta| |B|, and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N.
  * Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). By Cauchy and Schwarz that is
@@ -14237,14 +14245,14 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
     z->m = 0;
 }
 
-/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). w, mass: [n], [3 n]. */
-static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
-                                  double *mass, hd_error *e) {
+/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). */
+static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = task->lap;
+    hdi_lanczos *z = &lane->lanczos;
     const int32_t n = lap->n_active, j = z->m;
     const double *HDI_RESTRICT weight = task->weight, *HDI_RESTRICT noise = task->noise;
-    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0;
-    double norm = 0, scale, off = 0;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old;
+    double *HDI_RESTRICT w = lane->tmp, alpha = 0, norm = 0, scale, off = 0;
     int32_t i;
     hdi_pair_apply(lap, 1, 0, v, w);
     for (i = 0; i < n; i++) {
@@ -14256,7 +14264,7 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
     if (lap->B) {
         hdi_axpy(-alpha, c, w, n);
-        if (hdi_mass_solve(lap, HDI_MASS_STOP, w, v, mass, e) < 0) return e->status;
+        if (hdi_mass_solve(lap, HDI_MASS_STOP, w, v, w + n, e) < 0) return e->status;
         norm = hdi_dot(w, v, n);
     } else {                                     /* the same in one pass */
         for (i = 0; i < n; i++) {
@@ -14302,8 +14310,8 @@ static double hdi_lanczos_size(const hdi_lanczos *z, double s, int product) {
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     const int32_t m = z->m;
     const double end = rate ? t / 2 : t;
-    double integral = 0, from = 0, to, size = 0;
-    int32_t i, k;
+    double integral = 0, from = 0, to;
+    int32_t k;
     for (k = 24; k >= 0; k--) {
         to = ldexp(end, -2 * k);
         integral += hdi_lanczos_size(z, from, 0) * (to - from);
@@ -14312,8 +14320,8 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     if (rate)
         integral = HDI_TWO_OVER_E * integral + t * hdi_lanczos_size(z, end, 0) +
                    t * (end * hdi_lanczos_size(z, end, 1));
-    for (i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
+    return sqrt((double)m) *
+           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
 }
 
 /* Steps to the next look at the bound for a start of norm one, which falls like exp(-m^2): half of those that
@@ -14331,14 +14339,14 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     const double t = task->t, tol = task->tol;
     hdi_lanczos *z = &lane->lanczos;
     const int32_t most = hdi_low32(task->max_iterations, z->room);
-    double bound = 0, best = DBL_MAX, start = 0;
+    double bound = 0, best = DBL_MAX;
     int32_t look = 1, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
     if (task->rate) hdi_rational_rate(&set);
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
-        if (hdi_lanczos_step(task, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
+        if (hdi_lanczos_step(task, lane, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
         if (hdi_lanczos_bound(z, t, task->rate, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
@@ -14359,8 +14367,7 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
             e->value = lane->off.solver / lane->u_norm;
             return e->status;
         }
-        if (start == 0) start = lane->off.solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(start, lane->off.solver, tol * lane->u_norm),
+        if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(f0_norm, lane->off.solver, tol * lane->u_norm),
                            e) < 0) return e->status;
         look = z->m + hdi_lanczos_pace(z->m, bound, tol * lane->u_norm / f0_norm);
     }
@@ -14375,8 +14382,7 @@ static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm
     for (j = 0; j < m; j++) {
         hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
         if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(task, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0)
-            return e->status;
+        if (j + 1 < m && hdi_lanczos_step(task, lane, e) < 0) return e->status;
     }
     lane->lanczos.m = m;
     return HD_OK;
@@ -14395,8 +14401,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     hdi_lane_deflate(lane, lap);                 /* f0 = f - constants, rhs0 = B f0 */
     for (i = 0; i < n; i++) lane->u[i] = lane->sums[lap->component[i]];
-    f0_norm = hdi_dot(lane->f, lane->rhs, n);
-    f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
+    f0_norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, n)));
     lane->u_norm = sqrt(fixed);
     if (f0_norm > DBL_EPSILON * lane->f_norm) {
         status = hdi_lanczos_first(task, f0_norm, fixed, lane, watch, e);
@@ -14430,7 +14435,7 @@ typedef struct hdi_krylov {
     double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of each */
     double *u[HDI_WIDE];         /* [n], or NULL: not wanted */
     const double *means[HDI_WIDE];   /* [n_components] the constants of each */
-    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];
+    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];   /* T; beta[0] is 0 */
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
@@ -14476,27 +14481,11 @@ static void hdi_wide_dots(const double *x, const double *y, const double *weight
     }
 }
 
-/* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
-static void hdi_krylov_take(hdi_krylov *z, int32_t r, hdi_lane *lane) {
-    const hd_laplacian *lap = z->m->lap;
-    double norm;
-    int64_t i;
-    if (lane->skip) return;
-    z->fixed[r] = hdi_lane_means_norm2(lane, lap);
-    hdi_lane_deflate(lane, lap);
-    norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, lap->n_active)));
-    if (!(norm > DBL_EPSILON * lane->f_norm)) return;
-    z->f_norm[r] = norm;
-    z->done[r] = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        z->v[0][z->wide * i + r] = lane->f[i] / norm;
-        z->c[z->wide * i + r] = lane->rhs[i] / norm;
-    }
-}
-
-/* Starts with the fields of z->k lanes. */
+/* Starts with the fields f and rhs = B f of z->k lanes, without their constants and of norm one. */
 static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
-    const uint64_t n = (uint64_t)z->m->lap->n_active, count = n * (uint64_t)z->wide;
+    const hd_laplacian *lap = z->m->lap;
+    const uint64_t n = (uint64_t)lap->n_active, count = n * (uint64_t)z->wide;
+    int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
     if (!z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n + hdi_sweep_size(&z->m->sym, 1, z->wide), e);
@@ -14509,9 +14498,21 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     memset(z->v[0], 0, (size_t)count * sizeof *z->c);
     memset(z->c, 0, (size_t)count * sizeof *z->c);
     for (r = 0; r < z->wide; r++) {
+        hdi_lane *one = lane + (r < z->k ? r : 0);
+        double norm;
         z->done[r] = -1;
         z->f_norm[r] = z->fixed[r] = 0;
-        if (r < z->k) hdi_krylov_take(z, r, lane + r);
+        if (r >= z->k || one->skip) continue;
+        z->fixed[r] = hdi_lane_means_norm2(one, lap);
+        hdi_lane_deflate(one, lap);
+        norm = sqrt(hdi_max(0, hdi_dot(one->f, one->rhs, lap->n_active)));
+        if (!(norm > DBL_EPSILON * one->f_norm)) continue;
+        z->f_norm[r] = norm;
+        z->done[r] = 0;
+        for (i = 0; i < lap->n_active; i++) {
+            z->v[0][z->wide * i + r] = one->f[i] / norm;
+            z->c[z->wide * i + r] = one->rhs[i] / norm;
+        }
     }
     return HD_OK;
 }
@@ -14575,9 +14576,8 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     for (r = 0; r < wide; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
     if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, NULL, n, wide, z->alpha[j]);
-    for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
-    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], inv, n);
-    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], inv, n);
+    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], z->beta[j], n);
+    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], z->beta[j], n);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, NULL, n, wide, norm);
     for (r = 0; r < wide; r++) {
@@ -14597,9 +14597,7 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
 #define HDI_KRYLOV_TINY 1e-15
 
 static double hdi_krylov_value(double mu, double tau, int rate) {
-    double x;
-    if (!(mu > HDI_KRYLOV_TINY)) return tau > 0 || rate ? 0 : 1;
-    x = tau * hdi_max(0, 1 / mu - 1);
+    const double x = tau * hdi_max(0, 1 / hdi_max(mu, HDI_KRYLOV_TINY) - 1);
     return (rate > 1 ? x * x : rate ? -x : 1) * exp(-x);
 }
 
@@ -14756,7 +14754,7 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
         const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
-        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r];
+        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] + z->beta[j + 1][r];
         sum += most[j] * (root * (solve + product) + 4 * DBL_EPSILON * size_j);
         size += fabs(y[j]);
     }
@@ -14792,10 +14790,10 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     const hdi_rim *g = z->rim;
     const int32_t m = z->done[r], *row = z->m->lap->row;
     const int64_t size = (int64_t)m * g->n;
-    double off, last, *wl, *wb;
+    double off = 0, last = 0, *wl, *wb;
     int64_t p;
     int32_t j;
-    if (m <= 0 || g->n == 0) return 0;
+    if (g->n == 0) return 0;
     wl = (double *)hdi_alloc_zero(z->m->ctx, 2 * (uint64_t)size, sizeof *wl, e);
     if (!wl) return 0;
     wb = wl + size;
@@ -14805,12 +14803,10 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
             wl[(int64_t)j * g->n + g->to[p]] += g->l[p] * v;
             if (g->b) wb[(int64_t)j * g->n + g->to[p]] += z->m->scale * g->b[p] * v;
         }
-    last = hdi_rim_norm(z, r, t / 2, wl, wb);
-    off = t / 2 * last;
-    for (j = 1; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
+    for (j = 0; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
         const double step = t / 2 / (double)HDI_RIM_SAMPLES;
         const double now = hdi_rim_norm(z, r, t / 2 + j * step, wl, wb);
-        off += step * hdi_max(now, last);
+        off += (j > 0 ? step : t / 2) * hdi_max(now, last);
         last = now;
     }
     if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL);
@@ -15105,27 +15101,6 @@ static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacia
     return hdi_norm3(d);
 }
 
-/* Sums parts [n] of the same vertex of v, and leaves out zeros. */
-static int32_t hdi_terms_sum(const int32_t *v, hdi_pair *order, int32_t n, const double *part,
-                             int32_t *vertex, double *weight) {
-    int32_t q, m = 0;
-    for (q = 0; q < n; q++) {
-        order[q].key = (uint64_t)v[q];
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n);
-    for (q = 0; q < n; q++) {
-        const int32_t at = (int32_t)order[q].key;
-        if (part[order[q].id] == 0) continue;
-        if (m == 0 || vertex[m - 1] != at) {
-            vertex[m] = at;
-            weight[m++] = 0;
-        }
-        weight[m - 1] += part[order[q].id];
-    }
-    return m;
-}
-
 /* The parts of the corners of points [n], from one on, in part. Returns the sum of the sizes of their
  * weights. */
 static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, const hd_laplacian *lap,
@@ -15146,7 +15121,8 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
     return size;
 }
 
-/* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
+/* A source that is checked as weights of vertices, which have room in vertex and weight: sums of the parts
+ * that are not zero. normal: of sum 1. */
 static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
                                 int normal, int32_t *vertex, double *weight, hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
@@ -15155,56 +15131,54 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     hdi_scope work = hdi_scope_begin(in->ctx, e);
     hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
     double *part = HDI_TAKE(&work, double, all), size, sum = 0;
-    int32_t q;
+    int32_t q, m = 0;
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
         hdi_fail_row(e, HD_ERR_ARGUMENT,
                      "source: its weight, or the length of its curve, is zero or out of range", -1, -1, size);
-    to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
+    if (e->status < 0) return hdi_scope_end(&work);
+    for (q = 0; q < all; q++) {
+        order[q].key = (uint64_t)s->vertex[begin * corners + q];
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, all);
+    for (q = 0; q < all; q++) {
+        const int32_t at = (int32_t)order[q].key;
+        if (part[order[q].id] == 0) continue;
+        if (m == 0 || vertex[m - 1] != at) {
+            vertex[m] = at;
+            weight[m++] = 0;
+        }
+        weight[m - 1] += part[order[q].id];
+        sum += part[order[q].id];
+    }
+    if (normal && !(sum > (double)m * DBL_EPSILON * size))
+        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
+    for (q = 0; q < m && normal; q++) weight[q] /= sum;
+    to->n = m;
     to->vertex = vertex;
     to->weight = weight;
-    for (q = 0; q < to->n; q++) sum += weight[q];
-    if (normal && e->status >= 0 && !(sum > (double)to->n * DBL_EPSILON * size))
-        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
-    for (q = 0; q < to->n && normal; q++) weight[q] /= sum;
-    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
+    if (m == 1 && weight[0] == 1) *to = hdi_terms_vertex(vertex[0]);
     return hdi_scope_end(&work);
 }
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
-    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
+    const int32_t corners = hdi_source_corners(s);
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k, *vertex = NULL;
-    double *weight = NULL;
+    int32_t k, *vertex;
+    double *weight;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    if (!plain) {
-        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
-        vertex = HDI_TAKE(keep, int32_t, size);
-        weight = HDI_TAKE(keep, double, size);
-    }
+    vertex = HDI_TAKE(keep, int32_t, hdi_source_first(s, s->count) * corners);
+    weight = HDI_TAKE(keep, double, hdi_source_first(s, s->count) * corners);
     for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
-        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
-        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        const int64_t at = hdi_source_first(s, k) * corners;
+        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
-}
-
-/* Checks vertices. *which becomes the index of one that is not in the mesh. */
-static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
-                                    hd_error *e) {
-    int64_t q;
-    for (q = 0; q < k && e->status >= 0; q++) {
-        const int32_t v = vertex[q];
-        if (v >= 0 && v < lap->n) continue;
-        hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-        *which = q;
-    }
-    return e->status;
 }
 
 /* ---- the pair grounded ---- */
@@ -15251,65 +15225,60 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     }
 }
 
-/* L by entries of the source, where the rows and columns held are those of the identity: real, or complex
- * with the scaled B times `imaginary`. */
-static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
-                              hd_c64 *z) {
-    const hd_laplacian *lap = m->source;
+/* The diagonal of L where a vertex is held is so many times as large, and at least one: nothing of the vertex
+ * is left in double precision. */
+#define HDI_GROUND_HELD 1e30
+
+/* Factors L + i step B, with the scaled B and vertices held, which has room in f. val [entries of L]: work. */
+static hd_status hdi_ground_factor(const hdi_elim *m, const hdi_ground *g, hdi_factor *f, double step,
+                                   double *val, hd_error *e) {
+    const hd_c64 theta[4] = {{0, step}, {0, step}, {0, step}, {0, step}};
+    hd_laplacian held = *m->source;
+    hdi_elim own = *m;
     int32_t i;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            const int held = g->held[m->lap->row[lap->vertex[i]]] || g->held[m->lap->row[lap->vertex[j]]];
-            const double l = held ? i == j : lap->L.val[p];
-            const double b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
-            if (real) real[p] = l;
-            else z[p] = hdi_c(l, imaginary * (m->scale * b));
-        }
-    }
+    own.source = &held;
+    held.L.val = val;
+    memcpy(val, m->source->L.val, (size_t)held.L.nnz * sizeof *val);
+    for (i = 0; i < held.n_active; i++)
+        for (p = held.L.row_ptr[i]; p < held.L.row_ptr[i + 1] && g->held[m->lap->row[held.vertex[i]]]; p++)
+            if (held.L.col[p] == i) val[p] = 1 + HDI_GROUND_HELD * val[p];
+    return hdi_elim_factor(&own, f, 1, theta, e);
 }
 
-/* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
- * neighbours have nearly the same value, so that little is lost. As an approximation of G b, x is off at v by
- * at most sqrt(G_vv) times off of v's component: |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
- * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components]. */
-static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
-                                const double *extra, double *r, double *off) {
-    const hd_laplacian *lap = m->lap;
-    int32_t i;
-    int64_t p;
-    memset(off, 0, (size_t)lap->n_components * sizeof *off);
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
-        const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
-        double size = fabs(b[i]), rest = 0;
-        r[i] = g->held[i] ? 0 : b[i];
-        if (g->held[i]) continue;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
-            r[i] -= v;
-            size += fabs(v);
-            rest += conserves ? 0 : lap->L.val[p];
-        }
-        r[i] -= rest * x[i];
-        size += fabs(rest * x[i]);
-        off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
-    }
-}
-
-/* x = G b, with one step of iterative refinement; off as above. b is zero on the rows held. r [n], sweep:
- * work. */
+/* x = G b, with one step of iterative refinement. r = b - L x on the rows not held, by differences x_j - x_i:
+ * rows of L sum to zero but for `rest`, and neighbours have nearly the same value, so that little is lost. As
+ * an approximation of G b, x is off at v by at most sqrt(G_vv) times off of v's component: |e_v' G r| <=
+ * sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i| sqrt(G_ii))^2. extra: a further error of each r_i, or NULL.
+ * off [n_components]. r [n], sweep: work. */
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
+    const hd_laplacian *lap = m->lap;
     int32_t i, pass;
+    int64_t p;
     memset(x, 0, (size_t)m->sym.n * sizeof *x);
     memcpy(r, b, (size_t)m->sym.n * sizeof *r);
     for (pass = 0; pass < 2; pass++) {
         hdi_sweep z = hdi_sweep_open(&g->factor, 1, r, sweep);
         hdi_sweep_run(&z, m->ctx);
-        for (i = 0; i < m->sym.n; i++) x[i] += r[i];
-        hdi_ground_residual(m, g, b, x, extra, r, off);
+        memset(off, 0, (size_t)lap->n_components * sizeof *off);
+        for (i = 0; i < m->sym.n; i++) x[i] += g->held[i] ? 0 : r[i];
+        for (i = 0; i < lap->n_active; i++) {
+            const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
+            const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
+            double size = fabs(b[i]), rest = 0;
+            r[i] = g->held[i] ? 0 : b[i];
+            if (g->held[i]) continue;
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
+                r[i] -= v;
+                size += fabs(v);
+                rest += conserves ? 0 : lap->L.val[p];
+            }
+            r[i] -= rest * x[i];
+            size += fabs(rest * x[i]);
+            off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
+        }
     }
 }
 
@@ -15326,12 +15295,9 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const double one = 1;
     const size_t n = (size_t)lap->n_active, n_comp = (size_t)lap->n_components;
     double *val;
-    hdi_values v;
     int32_t i;
-    int64_t p;
     if (g->diag) return HD_OK;
-    memset(&v, 0, sizeof v);
-    v.real = val = HDI_TAKE(&s, double, lap->L.nnz);
+    val = HDI_TAKE(&s, double, lap->L.nnz);
     if (val) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
     if (g->diag && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         g->mean = g->diag + n;
@@ -15347,15 +15313,14 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
             g->held[i] = *loose == 1;
             if (*loose) *loose = 2;
         }
-        hdi_ground_values(m, g, 0, val, NULL);
-        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
+        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 &&
+            hdi_ground_factor(m, g, &g->factor, 0, val, e) >= 0 &&
             hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0 && g->factor.all.negative)
             hdi_not_semidefinite(e);
         for (i = 0; i < lap->n_active && e->status >= 0; i++) {
-            double size = lap->B ? 0 : lap->mass[i], *trace = g->trace + lap->component[i];
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
+            double *trace = g->trace + lap->component[i];
             g->diag[i] = g->held[i] ? 0 : hdi_max(0, g->diag[i]);
-            *trace += g->diag[i] * size;
+            *trace += g->diag[i] * hdi_mass_row(lap, i);
             g->largest_trace = hdi_max(g->largest_trace, *trace);
         }
         g->traced = 1;
@@ -15372,26 +15337,18 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
     const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
-    double *work, *b, coef[HDI_PACK] = {0};
+    double *val, *r, *work, coef[HDI_PACK] = {0};
     hdi_factor pack;
-    hdi_values v;
-    hd_c64 *val;
     int32_t i;
     if (g->formed) return HD_OK;
-    val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
+    val = HDI_TAKE(&s, double, lap->L.nnz);
+    r = HDI_TAKE(&s, double, lap->n_active);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
-    b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
-    if (e->status >= 0 && hdi_factor_make(&pack, NULL, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
-        hdi_ground_values(m, g, step, NULL, val);
-        memset(&v, 0, sizeof v);
-        v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
-        coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
-        hdi_factor_free(&pack);
-    }
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) b[i] = g->held[i] ? 0 : lap->mass[i];
-    hdi_ground_refined(m, g, b, NULL, g->mean, g->mean_off, b + lap->n_active, work);
+    hdi_factor_take(&pack, NULL, &m->sym, HDI_PACK, &s);
+    coef[4] = -1 / step;                         /* the first one's imaginary part */
+    if (e->status < 0 || hdi_ground_factor(m, g, &pack, step, val, e) < 0 ||
+        hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s) < 0) return hdi_scope_end(&s);
+    hdi_ground_refined(m, g, lap->mass, NULL, g->mean, g->mean_off, r, work);
     for (i = 0; i < lap->n_active; i++) {
         const double mass = lap->component_mass[lap->component[i]];
         if (!g->loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
@@ -15408,15 +15365,15 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
     const hd_laplacian *lap = m->lap;
     const int32_t n = lap->n_active, c = lap->component[lap->row[hdi_terms_at(from, 0)]];
     const double mass = lap->component_mass[c], trace = g->trace[c];
-    double *b = work, *y = b + n, *extra = y + n, *r = extra + n, *by = r + n;
-    double *sweep = by + lap->n_components, off, ws = 0, root = 0;   /* mean and sqrt(G) at the source */
+    double *b = work, *extra = b + n, *r = extra + n, *by = r + n, *sweep = by + lap->n_components;
+    double off, ws = 0, root = 0;                /* ws, root: mean and sqrt(G) at the source */
     int32_t i;
     int64_t p;
     memset(b, 0, (size_t)n * sizeof *b);
     for (i = 0; i < from->n; i++) {
         const int32_t row = lap->row[hdi_terms_at(from, i)];
         const double w = hdi_terms_weight(from, i);
-        b[row] = g->held[row] ? 0 : w;
+        b[row] = w;
         ws += forms ? w * g->mean[row] : 0;
         root += fabs(w) * sqrt(g->diag[row]);
     }
@@ -15429,11 +15386,11 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
             sum += lap->B[p] * u[lap->L.col[p]];
             size += fabs(lap->B[p] * u[lap->L.col[p]]);
         }
-        b[i] = g->held[i] ? 0 : sum;
+        b[i] = sum;
         extra[i] = (hdi_row_terms(lap, i) + 2) * DBL_EPSILON / 8 * size;
     }
-    hdi_ground_refined(m, g, b, extra, y, by, r, sweep);
-    for (i = 0; i < n; i++) u[i] = y[i] - (lap->component[i] == c ? ws * g->mean[i] / mass : 0);
+    hdi_ground_refined(m, g, b, extra, u, by, r, sweep);
+    for (i = 0; i < n; i++) u[i] -= lap->component[i] == c ? ws * g->mean[i] / mass : 0;
     return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace / mass) * root);
 }
 
@@ -15451,14 +15408,14 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     }
     if (forms && !g->formed) {
         hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
-        (void)HDI_TAKE(&form, double, 2 * nnz + 2 * (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
+        (void)HDI_TAKE(&form, double, nnz + (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
         hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
     }
     return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * (uint64_t)m->sym.n + (uint64_t)m->lap->n_components + hdi_sweep_size(&m->sym, 1, 1);
+    return 3 * (uint64_t)m->sym.n + (uint64_t)m->lap->n_components + hdi_sweep_size(&m->sym, 1, 1);
 }
 
 /* ==== [25] spectrum ====
@@ -20007,11 +19964,17 @@ static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double
 
 /* Checks pairs of vertices. */
 static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
-    const hd_laplacian *lap = h->heat->source;
+    const int32_t n = h->heat->source->n;
+    int64_t q;
     if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
     if (n_pairs > 0 && (!i || !j)) return hdi_missing(h->e);
-    if (hdi_vertices_check(lap, n_pairs, i, &h->e->row, h->e) < 0) return h->e->status;
-    return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
+    for (q = 0; q < 2 * n_pairs && h->e->status >= 0; q++) {
+        const int32_t v = q < n_pairs ? i[q] : j[q - n_pairs];
+        if (v >= 0 && v < n) continue;
+        hdi_fail_face(h->e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+        h->e->row = q % n_pairs;
+    }
+    return h->e->status;
 }
 
 /* The rows that are there, as a matrix with ascending columns. */
@@ -20364,14 +20327,6 @@ static double hdi_by_mass(double x, double b, int32_t mass) {
 /* Is row i of the copy of the pair one of those asked for? */
 static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
-}
-
-/* The sum of a row of B, without signs. */
-static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
-    double sum = lap->B ? 0 : lap->b_diag[i];
-    int64_t p;
-    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
-    return sum;
 }
 
 /* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */
