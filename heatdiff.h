@@ -15165,17 +15165,21 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
 
 /* The sources of a call. normal: weights of sum 1. */
 static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, int normal, hdi_scope *keep) {
-    const int32_t corners = hdi_source_corners(s);
+    const int plain = !s->first && hdi_source_corners(s) == 1 && !s->weight && !s->curve;
     hdi_terms *all = HDI_TAKE(keep, hdi_terms, s->count > 0 ? s->count : 0);
     hd_error *e = keep->e;
-    int32_t k, *vertex;
-    double *weight;
+    int32_t k, *vertex = NULL;
+    double *weight = NULL;
     if (!all || hdi_sources_check(s, lap->n, e) < 0) return all;
-    vertex = HDI_TAKE(keep, int32_t, hdi_source_first(s, s->count) * corners);
-    weight = HDI_TAKE(keep, double, hdi_source_first(s, s->count) * corners);
+    if (!plain) {
+        const int64_t size = hdi_source_first(s, s->count) * hdi_source_corners(s);
+        vertex = HDI_TAKE(keep, int32_t, size);
+        weight = HDI_TAKE(keep, double, size);
+    }
     for (k = 0; k < s->count && e->status >= 0; k++) {
-        const int64_t at = hdi_source_first(s, k) * corners;
-        if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
+        const int64_t at = hdi_source_first(s, k) * hdi_source_corners(s);
+        if (plain) all[k] = hdi_terms_vertex(s->vertex[k]);
+        else if (hdi_terms_make(all + k, s, k, lap, normal, vertex + at, weight + at, keep) < 0)
             (void)hdi_source_place(s, k, e);
     }
     return all;
