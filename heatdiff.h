@@ -14430,12 +14430,12 @@ typedef struct hdi_krylov {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
-    /* answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse */
+    /* answers of one pass over the basis: of one right-hand side at several times, or the reverse */
     int32_t n_sums;
     double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of each */
     double *u[HDI_WIDE];         /* [n], or NULL: not wanted */
     const double *means[HDI_WIDE];   /* [n_components] the constants of each */
-    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];   /* T; beta[0] is 0 */
+    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];  /* beta[0] is 0 */
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
     double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
@@ -15233,7 +15233,7 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
  * is left in double precision. */
 #define HDI_GROUND_HELD 1e30
 
-/* Factors L + i step B, with the scaled B and vertices held, which has room in f. val [entries of L]: work. */
+/* Factors L + i step B, with the scaled B and vertices held, in the room of f. val [entries of L]: work. */
 static hd_status hdi_ground_factor(const hdi_elim *m, const hdi_ground *g, hdi_factor *f, double step,
                                    double *val, hd_error *e) {
     const hd_c64 theta[4] = {{0, step}, {0, step}, {0, step}, {0, step}};
