@@ -12888,6 +12888,14 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
     return 0;
 }
 
+/* The sum of a row of B, without signs. */
+static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
+    double sum = lap->B ? 0 : lap->b_diag[i];
+    int64_t p;
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
+    return sum;
+}
+
 /* Rounding adds to row i of a residual b - (t L + theta B) x at most c_i sum_j M_ij |x_j|, with M = t |L| +
  * |theta| |B|, and c_i half a unit in the last place for every term of the row and HDI_NOISE_TERMS more (N.
  * Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 3.1). By Cauchy and Schwarz that is
@@ -14238,14 +14246,14 @@ static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
     z->m = 0;
 }
 
-/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). w, mass: [n], [3 n]. */
-static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, double *HDI_RESTRICT w,
-                                  double *mass, hd_error *e) {
+/* A step from v_j, c = B v_j, c_old = B v_(j-1) to the next, and alpha_j, beta_(j+1). */
+static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = task->lap;
+    hdi_lanczos *z = &lane->lanczos;
     const int32_t n = lap->n_active, j = z->m;
     const double *HDI_RESTRICT weight = task->weight, *HDI_RESTRICT noise = task->noise;
-    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old, alpha = 0;
-    double norm = 0, scale, off = 0;
+    double *HDI_RESTRICT v = z->v, *HDI_RESTRICT c = z->c, *HDI_RESTRICT c_old = z->c_old;
+    double *HDI_RESTRICT w = lane->tmp, alpha = 0, norm = 0, scale, off = 0;
     int32_t i;
     hdi_pair_apply(lap, 1, 0, v, w);
     for (i = 0; i < n; i++) {
@@ -14257,7 +14265,7 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lanczos *z, 
     if (alpha < -1e-6 * z->beta[j] - 4 * off) return hdi_not_semidefinite(e);
     if (lap->B) {
         hdi_axpy(-alpha, c, w, n);
-        if (hdi_mass_solve(lap, HDI_MASS_STOP, w, v, mass, e) < 0) return e->status;
+        if (hdi_mass_solve(lap, HDI_MASS_STOP, w, v, w + n, e) < 0) return e->status;
         norm = hdi_dot(w, v, n);
     } else {                                     /* the same in one pass */
         for (i = 0; i < n; i++) {
@@ -14303,8 +14311,8 @@ static double hdi_lanczos_size(const hdi_lanczos *z, double s, int product) {
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     const int32_t m = z->m;
     const double end = rate ? t / 2 : t;
-    double integral = 0, from = 0, to, size = 0;
-    int32_t i, k;
+    double integral = 0, from = 0, to;
+    int32_t k;
     for (k = 24; k >= 0; k--) {
         to = ldexp(end, -2 * k);
         integral += hdi_lanczos_size(z, from, 0) * (to - from);
@@ -14313,19 +14321,15 @@ static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
     if (rate)
         integral = HDI_TWO_OVER_E * integral + t * hdi_lanczos_size(z, end, 0) +
                    t * (end * hdi_lanczos_size(z, end, 1));
-    for (i = 0; i < m; i++) size += z->y[i] * z->y[i];
-    return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(size));
+    return sqrt((double)m) *
+           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
 }
 
-/* Steps to the next look at the bound: half of what a straight line through the logarithms of the last two
- * promises, because convergence speeds up. */
-static int32_t hdi_lanczos_pace(int32_t m, int32_t m_before, double bound, double bound_before,
-                                double target) {
-    const int32_t most = m < 64 ? 1 : m / 32;
-    double want;
-    if (!(bound < bound_before) || !(target > 0) || m == m_before) return most;
-    want = 0.5 * log(bound / target) / log(bound_before / bound) * (m - m_before);
-    return want < 1 ? 1 : want > most ? most : (int32_t)want;
+/* Steps to the next look at the bound for a start of norm one, which falls like exp(-m^2): half of those that
+ * are missing. */
+static int32_t hdi_lanczos_pace(int32_t m, double bound, double target) {
+    const double want = bound < 1 && target > 0 ? m / 4.0 * log(bound / target) / -log(bound) : m;
+    return want < 1 ? 1 : (int32_t)hdi_min(want, hdi_high32(1, m / 32));
 }
 
 /* First sweep: as many steps as the bound asks for, and the coefficients in y. fixed_norm2: the part of
@@ -14336,14 +14340,14 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     const double t = task->t, tol = task->tol;
     hdi_lanczos *z = &lane->lanczos;
     const int32_t most = hdi_low32(task->max_iterations, z->room);
-    double bound = 0, bound_before = 0, best = DBL_MAX, start = 0;
-    int32_t look = 1, looked = 0, best_m = 0;
+    double bound = 0, best = DBL_MAX;
+    int32_t look = 1, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
     if (task->rate) hdi_rational_rate(&set);
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
-        if (hdi_lanczos_step(task, z, lane->tmp, lane->tmp + lap->n_active, e) < 0) return e->status;
+        if (hdi_lanczos_step(task, lane, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
         if (hdi_lanczos_bound(z, t, task->rate, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
@@ -14364,13 +14368,9 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
             e->value = lane->off.solver / lane->u_norm;
             return e->status;
         }
-        if (start == 0) start = lane->off.solver;
-        if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(start, lane->off.solver, tol * lane->u_norm),
+        if (hdi_watch_look(watch, 0.5 * hdi_iteration_done(f0_norm, lane->off.solver, tol * lane->u_norm),
                            e) < 0) return e->status;
-        look = z->m +
-               hdi_lanczos_pace(z->m, looked, lane->off.solver, f0_norm * bound_before, tol * lane->u_norm);
-        looked = z->m;
-        bound_before = bound;
+        look = z->m + hdi_lanczos_pace(z->m, bound, tol * lane->u_norm / f0_norm);
     }
 }
 
@@ -14383,8 +14383,7 @@ static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm
     for (j = 0; j < m; j++) {
         hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
         if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(task, &lane->lanczos, lane->tmp, lane->tmp + n, e) < 0)
-            return e->status;
+        if (j + 1 < m && hdi_lanczos_step(task, lane, e) < 0) return e->status;
     }
     lane->lanczos.m = m;
     return HD_OK;
@@ -14403,8 +14402,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     hdi_lane_deflate(lane, lap);                 /* f0 = f - constants, rhs0 = B f0 */
     for (i = 0; i < n; i++) lane->u[i] = lane->sums[lap->component[i]];
-    f0_norm = hdi_dot(lane->f, lane->rhs, n);
-    f0_norm = f0_norm > 0 ? sqrt(f0_norm) : 0;
+    f0_norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, n)));
     lane->u_norm = sqrt(fixed);
     if (f0_norm > DBL_EPSILON * lane->f_norm) {
         status = hdi_lanczos_first(task, f0_norm, fixed, lane, watch, e);
@@ -14433,11 +14431,15 @@ typedef struct hdi_krylov {
     double *c, *w, *work;        /* [n][wide] B v and S B v; sweeps */
     double *probe;               /* [2 n] a solution and its residual */
     double *ahead;               /* [8][n] answers at several times, wide == 1 */
-    double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of answers */
-    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];
+    /* answers of one pass over the basis: of one right-hand side at several times, or the reverse */
+    int32_t n_sums;
+    double y[HDI_WIDE][HDI_KRYLOV_MAX];   /* coefficients of each */
+    double *u[HDI_WIDE];         /* [n], or NULL: not wanted */
+    const double *means[HDI_WIDE];   /* [n_components] the constants of each */
+    double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];  /* beta[0] is 0 */
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double solved;               /* largest residual found of a solve over that */
-    double f_norm[HDI_WIDE], whole[HDI_WIDE];   /* |f|_B without and with its constants */
+    double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
     int32_t done[HDI_WIDE];      /* steps that were enough, 0: not yet, -1: there are only constants */
     hdi_ritz ritz[HDI_WIDE];     /* of those that are done, with all rows */
     double g;
@@ -14460,7 +14462,6 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     for (i = 0; i <= HDI_KRYLOV_MAX; i++) hdi_free(ctx, z->v[i]);
     for (i = 0; i < HDI_WIDE; i++) hdi_free(ctx, z->ritz[i].mu);
     hdi_free(ctx, z->c);
-    hdi_free(ctx, z->work);
     hdi_free(ctx, z->ahead);
     memset(z, 0, sizeof *z);
 }
@@ -14481,42 +14482,38 @@ static void hdi_wide_dots(const double *x, const double *y, const double *weight
     }
 }
 
-/* Right-hand side r of the start: the lane's f and rhs = B f without their constants, of norm one. */
-static void hdi_krylov_take(hdi_krylov *z, int32_t r, hdi_lane *lane) {
-    const hd_laplacian *lap = z->m->lap;
-    double norm;
-    int64_t i;
-    z->whole[r] = lane->f_norm;
-    if (lane->skip) return;
-    hdi_lane_deflate(lane, lap);
-    norm = sqrt(hdi_max(0, hdi_dot(lane->f, lane->rhs, lap->n_active)));
-    if (!(norm > DBL_EPSILON * lane->f_norm)) return;
-    z->f_norm[r] = norm;
-    z->done[r] = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        z->v[0][z->wide * i + r] = lane->f[i] / norm;
-        z->c[z->wide * i + r] = lane->rhs[i] / norm;
-    }
-}
-
-/* Starts with the fields of z->k lanes. */
+/* Starts with the fields f and rhs = B f of z->k lanes, without their constants and of norm one. */
 static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
-    const uint64_t n = (uint64_t)z->m->lap->n_active, count = n * (uint64_t)z->wide;
+    const hd_laplacian *lap = z->m->lap;
+    const uint64_t n = (uint64_t)lap->n_active, count = n * (uint64_t)z->wide;
+    int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
-    if (z->v[0] && !z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n, e);
-    if (z->c && !z->work) z->work = HDI_NEW(ctx, double, hdi_sweep_size(&z->m->sym, 1, z->wide), e);
+    if (!z->c) z->c = HDI_NEW(ctx, double, 2 * count + 2 * n + hdi_sweep_size(&z->m->sym, 1, z->wide), e);
     if (e->status < 0) return e->status;
     z->w = z->c + count;
     z->probe = z->w + count;
+    z->work = z->probe + 2 * n;
     z->solved = 0;
     z->steps = 0;
     memset(z->v[0], 0, (size_t)count * sizeof *z->c);
     memset(z->c, 0, (size_t)count * sizeof *z->c);
     for (r = 0; r < z->wide; r++) {
+        hdi_lane *one = lane + (r < z->k ? r : 0);
+        double norm;
         z->done[r] = -1;
-        z->f_norm[r] = z->whole[r] = 0;
-        if (r < z->k) hdi_krylov_take(z, r, lane + r);
+        z->f_norm[r] = z->fixed[r] = 0;
+        if (r >= z->k || one->skip) continue;
+        z->fixed[r] = hdi_lane_means_norm2(one, lap);
+        hdi_lane_deflate(one, lap);
+        norm = sqrt(hdi_max(0, hdi_dot(one->f, one->rhs, lap->n_active)));
+        if (!(norm > DBL_EPSILON * one->f_norm)) continue;
+        z->f_norm[r] = norm;
+        z->done[r] = 0;
+        for (i = 0; i < lap->n_active; i++) {
+            z->v[0][z->wide * i + r] = one->f[i] / norm;
+            z->c[z->wide * i + r] = one->rhs[i] / norm;
+        }
     }
     return HD_OK;
 }
@@ -14580,9 +14577,8 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     for (r = 0; r < wide; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
     if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, NULL, n, wide, z->alpha[j]);
-    for (r = 0; r < wide; r++) inv[r] = j > 0 ? z->beta[j][r] : 0;
-    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], inv, n);
-    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], inv, n);
+    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], z->beta[j], n);
+    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], z->beta[j], n);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, NULL, n, wide, norm);
     for (r = 0; r < wide; r++) {
@@ -14597,15 +14593,13 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
 
 /* ---- functions of T ---- */
 
-/* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate -x exp(-x),
- * the function of the derivative. Tiny ones are rounding of modes that are gone. */
+/* F(mu) = exp(-x) for an eigenvalue mu of T in (0, 1], x = tau (1/mu - 1), tau = t/g; with rate (-x)^rate
+ * exp(-x), the function of the derivatives. Tiny ones are rounding of modes that are gone. */
 #define HDI_KRYLOV_TINY 1e-15
 
 static double hdi_krylov_value(double mu, double tau, int rate) {
-    double x;
-    if (!(mu > HDI_KRYLOV_TINY)) return tau > 0 || rate ? 0 : 1;
-    x = tau * hdi_max(0, 1 / mu - 1);
-    return (rate ? -x : 1) * exp(-x);
+    const double x = tau * hdi_max(0, 1 / hdi_max(mu, HDI_KRYLOV_TINY) - 1);
+    return (rate > 1 ? x * x : rate ? -x : 1) * exp(-x);
 }
 
 /* T of right-hand side r after the steps so far, with its arrays in room [m (rows + 1)]. */
@@ -14622,7 +14616,8 @@ static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t rows, d
     if (!hdi_lanczos_eigen(&z->alpha[0][r], &z->beta[0][r], HDI_WIDE, s->m, rows, s->mu, off, s->v))
         return hdi_lanczos_failed(e);
     for (i = 0; i < s->m; i++)                   /* 1/(1 + g lambda); of a constant rounding is left */
-        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] && z->f_norm[r] > 1e-8 * z->whole[r])
+        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] &&
+            z->f_norm[r] * z->f_norm[r] > 1e-16 * z->fixed[r])
             return hdi_not_semidefinite(e);
     return HD_OK;
 }
@@ -14648,72 +14643,56 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
     return sqrt(sum);
 }
 
-/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, and
- * zeros up to the longest basis. */
-static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, double *y) {
+/* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, or
+ * derivative `rate` of it times t^rate, and zeros up to the longest basis. */
+static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, int rate, double *y) {
     const int32_t m = hdi_high32(z->done[r], 0);
     const hdi_ritz *s = z->ritz + r;
     int32_t i;
     memset(y, 0, (size_t)z->steps * sizeof *y);
     for (i = 0; i < m; i++) {
         const double *v = s->v + i * m;
-        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, z->rate), v, y, m);
+        hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, rate), v, y, m);
     }
 }
-
-/* Answers summed up in one pass over the basis: of one right-hand side at several times, or the reverse. */
-typedef struct hdi_krylov_sum {
-    const hdi_krylov *z;
-    int32_t count;
-    const double *y[HDI_WIDE];   /* [steps] coefficients of each */
-    double *u[HDI_WIDE];   /* [n], or NULL: not wanted */
-    const double *means[HDI_WIDE];   /* [n_components] the constants of each */
-} hdi_krylov_sum;
 
 enum { HDI_KRYLOV_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
 /* Rows [begin, end) of all sums, side by side: s [rows][8]. */
-static void hdi_krylov_sum_block(const hdi_krylov_sum *a, int64_t begin, int64_t end,
-                                 double *HDI_RESTRICT s) {
-    const hdi_krylov *z = a->z;
+static void hdi_krylov_sum_block(const hdi_krylov *z, int64_t begin, int64_t end, double *HDI_RESTRICT s) {
     int32_t j, p;
     int64_t i;
     for (j = 0; j < z->steps; j++) {
         const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
         if (z->wide > 1) {
             double y[HDI_WIDE];
-            for (p = 0; p < HDI_WIDE; p++) y[p] = p < a->count ? a->y[p][j] : 0;
+            for (p = 0; p < HDI_WIDE; p++) y[p] = p < z->n_sums ? z->y[p][j] : 0;
             for (i = 0; i < end - begin; i++)
                 for (p = 0; p < HDI_WIDE; p++)
                     s[HDI_WIDE * i + p] += y[p] * v[HDI_WIDE * i + p];
         } else {
-            for (p = 0; p < a->count; p++)
-                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += a->y[p][j] * v[i];
+            for (p = 0; p < z->n_sums; p++)
+                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += z->y[p][j] * v[i];
         }
     }
 }
 
+/* u = the constants and the part of the basis, for each answer. */
 static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
-    const hdi_krylov_sum *a = (const hdi_krylov_sum *)arg;
-    const int32_t *component = a->z->m->lap->component;
-    const int64_t row = a->z->wide > 1 ? HDI_WIDE : 1, column = a->z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
+    const hdi_krylov *z = (const hdi_krylov *)arg;
+    const int32_t *component = z->m->lap->component;
+    const int64_t row = z->wide > 1 ? HDI_WIDE : 1, column = z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
     int64_t begin, i;
     int32_t p;
     for (begin = first; begin < last; begin += HDI_KRYLOV_BLOCK) {
         const int64_t end = begin + HDI_KRYLOV_BLOCK < last ? begin + HDI_KRYLOV_BLOCK : last;
         double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK];
         memset(s, 0, sizeof s);
-        hdi_krylov_sum_block(a, begin, end, s);
-        for (p = 0; p < a->count; p++)
-            for (i = begin; i < end && a->u[p]; i++)
-                a->u[p][i] = a->means[p][component[i]] + s[row * (i - begin) + column * p];
+        hdi_krylov_sum_block(z, begin, end, s);
+        for (p = 0; p < z->n_sums; p++)
+            for (i = begin; i < end && z->u[p]; i++)
+                z->u[p][i] = z->means[p][component[i]] + s[row * (i - begin) + column * p];
     }
-}
-
-/* u = the constants and the part of the basis, for each answer. */
-static void hdi_krylov_sum_run(const hdi_krylov *z, hdi_krylov_sum *a, hd_context *ctx) {
-    a->z = z;
-    hdi_parallel_ranges(ctx, z->m->lap->n_active, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, a);
 }
 
 /* ---- what answers are off by ---- */
@@ -14776,33 +14755,28 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
     for (j = 0; j < m; j++) {
         const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
         const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
-        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] * (j > 0) + z->beta[j + 1][r];
+        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] + z->beta[j + 1][r];
         sum += most[j] * (root * (solve + product) + 4 * DBL_EPSILON * size_j);
         size += fabs(y[j]);
     }
     return z->f_norm[r] * sum + most[0] * given + m * DBL_EPSILON * size;
 }
 
-/* The norm of w u + dw u' on the rim, in that of B^-1 and relative to |f|_B, at time s after z->from; with
- * rate that of its derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
+/* The norm of w u + dw u' on the rim, in that of B^-1, at time s after z->from; with rate that of its
+ * derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
 static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const double *w, const double *dw) {
-    const int32_t m = z->done[r], n = z->rim->n;
-    double y[HDI_KRYLOV_MAX] = {0}, dy[HDI_KRYLOV_MAX] = {0}, *rest = &z->rim->rest->re;
+    const double by = s > 0 ? 1 / s : 0;
+    const int32_t n = z->rim->n;
+    double y[HDI_KRYLOV_MAX], dy[HDI_KRYLOV_MAX], *rest = &z->rim->rest->re;
     int32_t i;
-    for (i = 0; i < m; i++) {
-        const double mu = z->ritz[r].mu[i], *v = z->ritz[r].v + (int64_t)i * m;
-        const double lambda = mu > HDI_KRYLOV_TINY ? hdi_max(0, 1 / mu - 1) / z->g : 0;
-        const double part = (z->rate ? -lambda : 1) * v[0] * exp(-s * lambda);
-        if (!(mu > HDI_KRYLOV_TINY)) continue;
-        hdi_axpy(part, v, y, m);
-        hdi_axpy(-lambda * part, v, dy, m);
-    }
+    hdi_krylov_coefficients(z, r, s, z->rate, y);
+    hdi_krylov_coefficients(z, r, s, z->rate + 1, dy);
     memset(rest, 0, (size_t)n * sizeof *rest);
-    for (i = 0; i < m; i++) {
+    for (i = 0; i < z->done[r]; i++) {
         hdi_axpy(y[i], w + (int64_t)i * n, rest, n);
-        if (dw) hdi_axpy(dy[i], dw + (int64_t)i * n, rest, n);
+        if (dw) hdi_axpy(by * dy[i], dw + (int64_t)i * n, rest, n);
     }
-    return sqrt(hdi_norm2w(rest, z->rim->weight, n));
+    return sqrt(hdi_norm2w(rest, z->rim->weight, n)) * (z->rate ? by : 1);
 }
 
 enum { HDI_RIM_SAMPLES = 6 };
@@ -14817,10 +14791,10 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     const hdi_rim *g = z->rim;
     const int32_t m = z->done[r], *row = z->m->lap->row;
     const int64_t size = (int64_t)m * g->n;
-    double off, last, *wl, *wb;
+    double off = 0, last = 0, *wl, *wb;
     int64_t p;
     int32_t j;
-    if (m <= 0 || g->n == 0) return 0;
+    if (g->n == 0) return 0;
     wl = (double *)hdi_alloc_zero(z->m->ctx, 2 * (uint64_t)size, sizeof *wl, e);
     if (!wl) return 0;
     wb = wl + size;
@@ -14830,19 +14804,17 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
             wl[(int64_t)j * g->n + g->to[p]] += g->l[p] * v;
             if (g->b) wb[(int64_t)j * g->n + g->to[p]] += z->m->scale * g->b[p] * v;
         }
-    last = hdi_rim_norm(z, r, t / 2, wl, wb);
-    off = t / 2 * last;
-    for (j = 1; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
+    for (j = 0; j <= HDI_RIM_SAMPLES; j++) {     /* steps count as the larger of their ends */
         const double step = t / 2 / (double)HDI_RIM_SAMPLES;
         const double now = hdi_rim_norm(z, r, t / 2 + j * step, wl, wb);
-        off += step * hdi_max(now, last);
+        off += (j > 0 ? step : t / 2) * hdi_max(now, last);
         last = now;
     }
     if (z->dual && g->b) off += hdi_rim_norm(z, r, t, wb, NULL);
     off *= z->rate ? t : 1;
-    if (z->inverse && !(z->from > 0)) off += sqrt(hdi_norm2w(wb, g->weight, g->n));
+    if (z->inverse && !(z->from > 0)) off += z->f_norm[r] * sqrt(hdi_norm2w(wb, g->weight, g->n));
     hdi_free(z->m->ctx, wl);
-    return off * z->f_norm[r] / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
+    return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
@@ -14852,17 +14824,14 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
     const int32_t m = z->done[r];
     double most[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
+    lane->off = z->before[r];                    /* K_t makes no error larger */
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     if (m > 0) {
         hdi_ritz_most(z->ritz + r, t / z->g, most);
-        lane->off.solver = z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
-        lane->off.rounding = hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
-        if (HDI_HAS_LOCAL && z->rim) lane->off.local = hdi_rim_bound(z, r, t, e);
+        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
+        lane->off.rounding += hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
+        if (HDI_HAS_LOCAL && z->rim) lane->off.local += hdi_rim_bound(z, r, t, e);
     }
-    lane->off.rational += z->before[r].rational; /* K_t makes no error larger */
-    lane->off.solver += z->before[r].solver;
-    lane->off.rounding += z->before[r].rounding;
-    lane->off.local += z->before[r].local;
     hdi_conserve(lap, lane, 1);
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, t * drift, 1) + lane->f_off);
@@ -14876,11 +14845,12 @@ static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *
 #define HDI_KRYLOV_SHARE 0.25
 #define HDI_KRYLOV_FADES 1e-3
 
-/* The error bound of right-hand side r at the worst of the times: *miss times what is asked for, *bound
- * relative to |f|_B. fixed: |constants|_B^2. It ends early where two times miss already. */
+/* The error bound of right-hand side r at the worst of the times, in miss_bound: times what is asked for, and
+ * relative to |f|_B. It ends early where two times miss already. */
 static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
-                                double fixed, double miss_bound[2], hd_error *e) {
-    const double before = z->before[r].solver / z->f_norm[r], rest = fixed / (z->f_norm[r] * z->f_norm[r]);
+                                 double miss_bound[2], hd_error *e) {
+    const double before = z->before[r].solver / z->f_norm[r];
+    const double rest = z->fixed[r] / (z->f_norm[r] * z->f_norm[r]);
     double room[3 * HDI_KRYLOV_MAX], most[2];
     hdi_ritz s;
     int32_t q;
@@ -14916,10 +14886,9 @@ static int32_t hdi_krylov_pace(double miss) {
     return steps < 8 ? (int32_t)steps : 8;
 }
 
-/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. fixed[r] is
- * |constants|_B^2. */
-static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol,
-                               const double *fixed, hd_context *ctx, hd_error *e) {
+/* Steps until the bounds of all right-hand sides at all times are below tol times their answers. */
+static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol, hd_context *ctx,
+                                hd_error *e) {
     double best[HDI_WIDE], now[2], miss_all;
     int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
     hd_status worst = HD_OK;
@@ -14935,7 +14904,7 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
         miss_all = 1;
         for (r = 0; r < z->k; r++) {
             if (z->done[r]) continue;
-            if (hdi_krylov_miss(z, r, t, n_times, tol, fixed[r], now, e) < 0) return e->status;
+            if (hdi_krylov_miss(z, r, t, n_times, tol, now, e) < 0) return e->status;
             if (now[0] < best[r] / 2 && z->steps < most) {
                 best[r] = now[0];
                 best_m[r] = z->steps;
@@ -15132,27 +15101,6 @@ static double hdi_source_piece(const hd_sources *s, int64_t q, const hd_laplacia
     return hdi_norm3(d);
 }
 
-/* Sums parts [n] of the same vertex of v, and leaves out zeros. */
-static int32_t hdi_terms_sum(const int32_t *v, hdi_pair *order, int32_t n, const double *part,
-                             int32_t *vertex, double *weight) {
-    int32_t q, m = 0;
-    for (q = 0; q < n; q++) {
-        order[q].key = (uint64_t)v[q];
-        order[q].id = q;
-    }
-    hdi_sort_pairs(order, n);
-    for (q = 0; q < n; q++) {
-        const int32_t at = (int32_t)order[q].key;
-        if (part[order[q].id] == 0) continue;
-        if (m == 0 || vertex[m - 1] != at) {
-            vertex[m] = at;
-            weight[m++] = 0;
-        }
-        weight[m - 1] += part[order[q].id];
-    }
-    return m;
-}
-
 /* The parts of the corners of points [n], from one on, in part. Returns the sum of the sizes of their
  * weights. */
 static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, const hd_laplacian *lap,
@@ -15173,7 +15121,8 @@ static double hdi_source_parts(const hd_sources *s, int64_t begin, int64_t n, co
     return size;
 }
 
-/* A source that is checked as weights of vertices, which have room in vertex and weight. normal: of sum 1. */
+/* A source that is checked as weights of vertices, which have room in vertex and weight: sums of the parts
+ * that are not zero. normal: of sum 1. */
 static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, const hd_laplacian *lap,
                                 int normal, int32_t *vertex, double *weight, hdi_scope *in) {
     const int64_t begin = hdi_source_first(s, k), n = hdi_source_first(s, k + 1) - begin;
@@ -15182,20 +15131,35 @@ static hd_status hdi_terms_make(hdi_terms *to, const hd_sources *s, int32_t k, c
     hdi_scope work = hdi_scope_begin(in->ctx, e);
     hdi_pair *order = HDI_TAKE(&work, hdi_pair, all);
     double *part = HDI_TAKE(&work, double, all), size, sum = 0;
-    int32_t q;
+    int32_t q, m = 0;
     if (e->status < 0) return hdi_scope_end(&work);
     size = hdi_source_parts(s, begin, n, lap, part, e);
     if (e->status >= 0 && !(size >= HDI_SOURCE_LEAST && size <= HDI_SOURCE_MOST))
         hdi_fail_row(e, HD_ERR_ARGUMENT,
                      "source: its weight, or the length of its curve, is zero or out of range", -1, -1, size);
-    to->n = hdi_terms_sum(s->vertex + begin * corners, order, all, part, vertex, weight);
+    if (e->status < 0) return hdi_scope_end(&work);
+    for (q = 0; q < all; q++) {
+        order[q].key = (uint64_t)s->vertex[begin * corners + q];
+        order[q].id = q;
+    }
+    hdi_sort_pairs(order, all);
+    for (q = 0; q < all; q++) {
+        const int32_t at = (int32_t)order[q].key;
+        if (part[order[q].id] == 0) continue;
+        if (m == 0 || vertex[m - 1] != at) {
+            vertex[m] = at;
+            weight[m++] = 0;
+        }
+        weight[m - 1] += part[order[q].id];
+        sum += part[order[q].id];
+    }
+    if (normal && !(sum > (double)m * DBL_EPSILON * size))
+        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
+    for (q = 0; q < m && normal; q++) weight[q] /= sum;
+    to->n = m;
     to->vertex = vertex;
     to->weight = weight;
-    for (q = 0; q < to->n; q++) sum += weight[q];
-    if (normal && e->status >= 0 && !(sum > (double)to->n * DBL_EPSILON * size))
-        hdi_fail_row(e, HD_ERR_ARGUMENT, "source: the sum of its weights is not positive", -1, -1, sum);
-    for (q = 0; q < to->n && normal; q++) weight[q] /= sum;
-    if (to->n == 1 && to->weight[0] == 1) *to = hdi_terms_vertex(to->vertex[0]);
+    if (m == 1 && weight[0] == 1) *to = hdi_terms_vertex(vertex[0]);
     return hdi_scope_end(&work);
 }
 
@@ -15219,19 +15183,6 @@ static hdi_terms *hdi_terms_all(const hd_sources *s, const hd_laplacian *lap, in
             (void)hdi_source_place(s, k, e);
     }
     return all;
-}
-
-/* Checks vertices. *which becomes the index of one that is not in the mesh. */
-static hd_status hdi_vertices_check(const hd_laplacian *lap, int64_t k, const int32_t *vertex, int64_t *which,
-                                    hd_error *e) {
-    int64_t q;
-    for (q = 0; q < k && e->status >= 0; q++) {
-        const int32_t v = vertex[q];
-        if (v >= 0 && v < lap->n) continue;
-        hdi_fail_face(e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
-        *which = q;
-    }
-    return e->status;
 }
 
 /* ---- the pair grounded ---- */
@@ -15278,65 +15229,60 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     }
 }
 
-/* L by entries of the source, where the rows and columns held are those of the identity: real, or complex
- * with the scaled B times `imaginary`. */
-static void hdi_ground_values(const hdi_elim *m, const hdi_ground *g, double imaginary, double *real,
-                              hd_c64 *z) {
-    const hd_laplacian *lap = m->source;
+/* The diagonal of L where a vertex is held is so many times as large, and at least one: nothing of the vertex
+ * is left in double precision. */
+#define HDI_GROUND_HELD 1e30
+
+/* Factors L + i step B, with the scaled B and vertices held, in the room of f. val [entries of L]: work. */
+static hd_status hdi_ground_factor(const hdi_elim *m, const hdi_ground *g, hdi_factor *f, double step,
+                                   double *val, hd_error *e) {
+    const hd_c64 theta[4] = {{0, step}, {0, step}, {0, step}, {0, step}};
+    hd_laplacian held = *m->source;
+    hdi_elim own = *m;
     int32_t i;
     int64_t p;
-    for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t j = lap->L.col[p];
-            const int held = g->held[m->lap->row[lap->vertex[i]]] || g->held[m->lap->row[lap->vertex[j]]];
-            const double l = held ? i == j : lap->L.val[p];
-            const double b = held ? 0 : lap->B ? lap->B[p] : i == j ? lap->mass[i] : 0;
-            if (real) real[p] = l;
-            else z[p] = hdi_c(l, imaginary * (m->scale * b));
-        }
-    }
+    own.source = &held;
+    held.L.val = val;
+    memcpy(val, m->source->L.val, (size_t)held.L.nnz * sizeof *val);
+    for (i = 0; i < held.n_active; i++)
+        for (p = held.L.row_ptr[i]; p < held.L.row_ptr[i + 1] && g->held[m->lap->row[held.vertex[i]]]; p++)
+            if (held.L.col[p] == i) val[p] = 1 + HDI_GROUND_HELD * val[p];
+    return hdi_elim_factor(&own, f, 1, theta, e);
 }
 
-/* r = b - L x on the rows not held, by differences x_j - x_i: rows of L sum to zero but for `rest`, and
- * neighbours have nearly the same value, so that little is lost. As an approximation of G b, x is off at v by
- * at most sqrt(G_vv) times off of v's component: |e_v' G r| <= sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i|
- * sqrt(G_ii))^2. extra: a further error of each r_i, or NULL. off [n_components]. */
-static void hdi_ground_residual(const hdi_elim *m, const hdi_ground *g, const double *b, const double *x,
-                                const double *extra, double *r, double *off) {
-    const hd_laplacian *lap = m->lap;
-    int32_t i;
-    int64_t p;
-    memset(off, 0, (size_t)lap->n_components * sizeof *off);
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
-        const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
-        double size = fabs(b[i]), rest = 0;
-        r[i] = g->held[i] ? 0 : b[i];
-        if (g->held[i]) continue;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
-            r[i] -= v;
-            size += fabs(v);
-            rest += conserves ? 0 : lap->L.val[p];
-        }
-        r[i] -= rest * x[i];
-        size += fabs(rest * x[i]);
-        off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
-    }
-}
-
-/* x = G b, with one step of iterative refinement; off as above. b is zero on the rows held. r [n], sweep:
- * work. */
+/* x = G b, with one step of iterative refinement. r = b - L x on the rows not held, by differences x_j - x_i:
+ * rows of L sum to zero but for `rest`, and neighbours have nearly the same value, so that little is lost. As
+ * an approximation of G b, x is off at v by at most sqrt(G_vv) times off of v's component: |e_v' G r| <=
+ * sqrt(G_vv r'Gr), and r'Gr <= (sum |r_i| sqrt(G_ii))^2. extra: a further error of each r_i, or NULL.
+ * off [n_components]. r [n], sweep: work. */
 static void hdi_ground_refined(const hdi_elim *m, const hdi_ground *g, const double *b, const double *extra,
                                double *x, double *off, double *r, double *sweep) {
+    const hd_laplacian *lap = m->lap;
     int32_t i, pass;
+    int64_t p;
     memset(x, 0, (size_t)m->sym.n * sizeof *x);
     memcpy(r, b, (size_t)m->sym.n * sizeof *r);
     for (pass = 0; pass < 2; pass++) {
         hdi_sweep z = hdi_sweep_open(&g->factor, 1, r, sweep);
         hdi_sweep_run(&z, m->ctx);
-        for (i = 0; i < m->sym.n; i++) x[i] += r[i];
-        hdi_ground_residual(m, g, b, x, extra, r, off);
+        memset(off, 0, (size_t)lap->n_components * sizeof *off);
+        for (i = 0; i < m->sym.n; i++) x[i] += g->held[i] ? 0 : r[i];
+        for (i = 0; i < lap->n_active; i++) {
+            const double c = (hdi_row_terms(lap, i) + 4) * DBL_EPSILON;
+            const int conserves = lap->conserves && hdi_finite(lap->component_mass[lap->component[i]]);
+            double size = fabs(b[i]), rest = 0;
+            r[i] = g->held[i] ? 0 : b[i];
+            if (g->held[i]) continue;
+            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+                const double v = lap->L.val[p] * (x[lap->L.col[p]] - x[i]);
+                r[i] -= v;
+                size += fabs(v);
+                rest += conserves ? 0 : lap->L.val[p];
+            }
+            r[i] -= rest * x[i];
+            size += fabs(rest * x[i]);
+            off[lap->component[i]] += (fabs(r[i]) + c * size + (extra ? extra[i] : 0)) * sqrt(g->diag[i]);
+        }
     }
 }
 
@@ -15353,12 +15299,9 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
     const double one = 1;
     const size_t n = (size_t)lap->n_active, n_comp = (size_t)lap->n_components;
     double *val;
-    hdi_values v;
     int32_t i;
-    int64_t p;
     if (g->diag) return HD_OK;
-    memset(&v, 0, sizeof v);
-    v.real = val = HDI_TAKE(&s, double, lap->L.nnz);
+    val = HDI_TAKE(&s, double, lap->L.nnz);
     if (val) g->diag = HDI_NEW(m->ctx, double, hdi_ground_size(m), e);
     if (g->diag && hdi_factor_make(&g->factor, NULL, &m->sym, 1, m->ctx, e) >= 0) {
         g->mean = g->diag + n;
@@ -15374,15 +15317,14 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
             g->held[i] = *loose == 1;
             if (*loose) *loose = 2;
         }
-        hdi_ground_values(m, g, 0, val, NULL);
-        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 && hdi_factor_run(&g->factor, &v, e) >= 0 &&
+        if (hdi_progress(m->ctx, "factor", 0, e) >= 0 &&
+            hdi_ground_factor(m, g, &g->factor, 0, val, e) >= 0 &&
             hdi_elim_inverse_diagonal(m, &g->factor, &one, g->diag, &s) >= 0 && g->factor.all.negative)
             hdi_not_semidefinite(e);
         for (i = 0; i < lap->n_active && e->status >= 0; i++) {
-            double size = lap->B ? 0 : lap->mass[i], *trace = g->trace + lap->component[i];
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) size += fabs(lap->B[p]);
+            double *trace = g->trace + lap->component[i];
             g->diag[i] = g->held[i] ? 0 : hdi_max(0, g->diag[i]);
-            *trace += g->diag[i] * size;
+            *trace += g->diag[i] * hdi_mass_row(lap, i);
             g->largest_trace = hdi_max(g->largest_trace, *trace);
         }
         g->traced = 1;
@@ -15399,26 +15341,18 @@ static hd_status hdi_ground_forms(hdi_elim *m, hdi_ground *g, hd_error *e) {
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const hd_laplacian *lap = m->lap;
     const double step = g->largest_trace > 0 ? HDI_GROUND_STEP / g->largest_trace : 1;
-    double *work, *b, coef[HDI_PACK] = {0};
+    double *val, *r, *work, coef[HDI_PACK] = {0};
     hdi_factor pack;
-    hdi_values v;
-    hd_c64 *val;
     int32_t i;
     if (g->formed) return HD_OK;
-    val = HDI_TAKE(&s, hd_c64, lap->L.nnz);
+    val = HDI_TAKE(&s, double, lap->L.nnz);
+    r = HDI_TAKE(&s, double, lap->n_active);
     work = HDI_TAKE(&s, double, hdi_sweep_size(&m->sym, 1, 1));
-    b = HDI_TAKE(&s, double, 2 * (uint64_t)lap->n_active);
-    if (e->status >= 0 && hdi_factor_make(&pack, NULL, &m->sym, HDI_PACK, m->ctx, e) >= 0) {
-        hdi_ground_values(m, g, step, NULL, val);
-        memset(&v, 0, sizeof v);
-        v.z[0] = v.z[1] = v.z[2] = v.z[3] = val;
-        coef[4] = -1 / step;                     /* the first one's imaginary part */
-        if (hdi_factor_run(&pack, &v, e) >= 0) (void)hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s);
-        hdi_factor_free(&pack);
-    }
-    if (e->status < 0) return hdi_scope_end(&s);
-    for (i = 0; i < lap->n_active; i++) b[i] = g->held[i] ? 0 : lap->mass[i];
-    hdi_ground_refined(m, g, b, NULL, g->mean, g->mean_off, b + lap->n_active, work);
+    hdi_factor_take(&pack, NULL, &m->sym, HDI_PACK, &s);
+    coef[4] = -1 / step;                         /* the first one's imaginary part */
+    if (e->status < 0 || hdi_ground_factor(m, g, &pack, step, val, e) < 0 ||
+        hdi_elim_inverse_diagonal(m, &pack, coef, g->form, &s) < 0) return hdi_scope_end(&s);
+    hdi_ground_refined(m, g, lap->mass, NULL, g->mean, g->mean_off, r, work);
     for (i = 0; i < lap->n_active; i++) {
         const double mass = lap->component_mass[lap->component[i]];
         if (!g->loose[lap->component[i]]) g->mean[i] = 0;   /* nothing to take out */
@@ -15435,15 +15369,15 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
     const hd_laplacian *lap = m->lap;
     const int32_t n = lap->n_active, c = lap->component[lap->row[hdi_terms_at(from, 0)]];
     const double mass = lap->component_mass[c], trace = g->trace[c];
-    double *b = work, *y = b + n, *extra = y + n, *r = extra + n, *by = r + n;
-    double *sweep = by + lap->n_components, off, ws = 0, root = 0;   /* mean and sqrt(G) at the source */
+    double *b = work, *extra = b + n, *r = extra + n, *by = r + n, *sweep = by + lap->n_components;
+    double off, ws = 0, root = 0;                /* ws, root: mean and sqrt(G) at the source */
     int32_t i;
     int64_t p;
     memset(b, 0, (size_t)n * sizeof *b);
     for (i = 0; i < from->n; i++) {
         const int32_t row = lap->row[hdi_terms_at(from, i)];
         const double w = hdi_terms_weight(from, i);
-        b[row] = g->held[row] ? 0 : w;
+        b[row] = w;
         ws += forms ? w * g->mean[row] : 0;
         root += fabs(w) * sqrt(g->diag[row]);
     }
@@ -15456,11 +15390,11 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
             sum += lap->B[p] * u[lap->L.col[p]];
             size += fabs(lap->B[p] * u[lap->L.col[p]]);
         }
-        b[i] = g->held[i] ? 0 : sum;
+        b[i] = sum;
         extra[i] = (hdi_row_terms(lap, i) + 2) * DBL_EPSILON / 8 * size;
     }
-    hdi_ground_refined(m, g, b, extra, y, by, r, sweep);
-    for (i = 0; i < n; i++) u[i] = y[i] - (lap->component[i] == c ? ws * g->mean[i] / mass : 0);
+    hdi_ground_refined(m, g, b, extra, u, by, r, sweep);
+    for (i = 0; i < n; i++) u[i] -= lap->component[i] == c ? ws * g->mean[i] / mass : 0;
     return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace / mass) * root);
 }
 
@@ -15478,14 +15412,14 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
     }
     if (forms && !g->formed) {
         hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
-        (void)HDI_TAKE(&form, double, 2 * nnz + 2 * (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
+        (void)HDI_TAKE(&form, double, nnz + (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
         hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
     }
     return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
 
 static uint64_t hdi_ground_room(const hdi_elim *m) {
-    return 4 * (uint64_t)m->sym.n + (uint64_t)m->lap->n_components + hdi_sweep_size(&m->sym, 1, 1);
+    return 3 * (uint64_t)m->sym.n + (uint64_t)m->lap->n_components + hdi_sweep_size(&m->sym, 1, 1);
 }
 
 /* ==== [25] spectrum ====
@@ -18333,9 +18267,8 @@ static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c)
 static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32_t q1) {
     hd_heat *heat = h->heat;
     hdi_krylov *z = heat->krylov;
-    double fixed[HDI_WIDE];
-    int32_t i;
     double g = hdi_krylov_shift(z->from, h->times[q0], h->times[q1 - 1], heat->lambda_max);
+    int32_t i;
     if (h->part && q1 - q0 == 1) g = HDI_SHIFT_PART * (h->times[q0] - z->from);
     /* derivatives of smooth fields at short times are small beside the fields, and digits of T are lost */
     if (h->rate && heat->lambda_max > 0) g = hdi_max(g, HDI_SHIFT_RATE / heat->lambda_max);
@@ -18345,16 +18278,13 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
     if (hdi_krylov_start(z, heat->lane, heat->ctx, h->e) < 0 || hdi_elim_shift(h->m, g, h->e) < 0)
         return h->e->status;
     z->g = h->m->shift;
-    for (i = 0; i < n; i++)
-        fixed[i] = heat->lane[i].skip ? 0 : hdi_lane_means_norm2(heat->lane + i, h->lap);
-    (void)hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, fixed, heat->ctx, h->e);
+    (void)hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, heat->ctx, h->e);
     for (i = 0; i < n; i++) h->rep->iterations += hdi_high32(z->done[i], 0);
     return h->e->status;
 }
 
-/* The answers of n items at time q, whose sums are in place p and after in a. */
-static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const hdi_krylov_sum *a,
-                                  int32_t p) {
+/* The answers of n items at time q, whose sums are in place p and after. */
+static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, int32_t p) {
     const hd_heat *heat = h->heat;
     const size_t bytes = (size_t)h->lap->n_active * sizeof *h->heat->lane->u;
     hdi_krylov *z = heat->krylov;
@@ -18363,8 +18293,8 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, const 
         hdi_lane *lane = h->heat->lane + i;
         lane->status = HD_OK;
         if (lane->skip) continue;
-        if (a->u[p + i] != lane->u) memcpy(lane->u, a->u[p + i], bytes);
-        hdi_krylov_answer(z, i, h->times[q] - z->from, a->y[p + i], heat->drift, lane, h->e);
+        if (z->u[p + i] != lane->u) memcpy(lane->u, z->u[p + i], bytes);
+        hdi_krylov_answer(z, i, h->times[q] - z->from, z->y[p + i], heat->drift, lane, h->e);
         if (h->e->status < 0) return h->e->status;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
@@ -18379,26 +18309,23 @@ static hd_status hdi_krylov_answers(hdi_heat_call *h, int32_t n, int32_t q0, int
     hdi_krylov *z = h->heat->krylov;
     const int64_t rows = h->lap->n_active;
     const int abreast = z->wide > 1;             /* else one item, at several times */
-    hdi_krylov_sum a;
     int32_t p, q, n_here;
-    memset(&a, 0, sizeof a);
     if (!abreast && q1 - q0 > 1 && !z->ahead)
         z->ahead = HDI_NEW(ctx, double, HDI_WIDE * (uint64_t)rows, h->e);
     if (h->e->status < 0) return h->e->status;
     for (q = q0; q < q1; q += n_here) {
         n_here = abreast ? 1 : hdi_low32(q1 - q, HDI_WIDE);
-        a.count = n * n_here;
-        for (p = 0; p < a.count; p++) {
+        z->n_sums = n * n_here;
+        for (p = 0; p < z->n_sums; p++) {
             const hdi_lane *lane = h->heat->lane + (abreast ? p : 0);
             const double t = h->times[abreast ? q : q + p] - z->from;
-            a.u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
-            a.means[p] = lane->sums;
-            a.y[p] = z->y[p];
-            hdi_krylov_coefficients(z, abreast ? p : 0, t, z->y[p]);
+            z->u[p] = lane->skip ? NULL : n_here > 1 ? z->ahead + rows * p : lane->u;
+            z->means[p] = lane->sums;
+            hdi_krylov_coefficients(z, abreast ? p : 0, t, z->rate, z->y[p]);
         }
-        hdi_krylov_sum_run(z, &a, ctx);
+        hdi_parallel_ranges(ctx, rows, HDI_ROWS_PER_TASK, hdi_krylov_sum_task, z);
         for (p = 0; p < n_here; p++)
-            if (hdi_krylov_store(h, n, q + p, &a, p) < 0) return h->e->status;
+            if (hdi_krylov_store(h, n, q + p, p) < 0) return h->e->status;
     }
     return HD_OK;
 }
@@ -19943,11 +19870,17 @@ static hd_status hdi_columns_ask(hdi_heat_call *h, int32_t n_times, const double
 
 /* Checks pairs of vertices. */
 static hd_status hdi_pairs_check(hdi_heat_call *h, int64_t n_pairs, const int32_t *i, const int32_t *j) {
-    const hd_laplacian *lap = h->heat->source;
+    const int32_t n = h->heat->source->n;
+    int64_t q;
     if (n_pairs < 0) return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the number of pairs is negative");
     if (n_pairs > 0 && (!i || !j)) return hdi_missing(h->e);
-    if (hdi_vertices_check(lap, n_pairs, i, &h->e->row, h->e) < 0) return h->e->status;
-    return hdi_vertices_check(lap, n_pairs, j, &h->e->row, h->e);
+    for (q = 0; q < 2 * n_pairs && h->e->status >= 0; q++) {
+        const int32_t v = q < n_pairs ? i[q] : j[q - n_pairs];
+        if (v >= 0 && v < n) continue;
+        hdi_fail_face(h->e, HD_ERR_INDEX, "heat: a source or vertex is not in the mesh", -1, v, v);
+        h->e->row = q % n_pairs;
+    }
+    return h->e->status;
 }
 
 /* The rows that are there, as a matrix with ascending columns. */
@@ -20289,14 +20222,6 @@ static double hdi_by_mass(double x, double b, int32_t mass) {
 /* Is row i of the copy of the pair one of those asked for? */
 static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
-}
-
-/* The sum of a row of B, without signs. */
-static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
-    double sum = lap->B ? 0 : lap->b_diag[i];
-    int64_t p;
-    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
-    return sum;
 }
 
 /* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */

@@ -856,7 +856,7 @@ static void int_ritz_above(void) {
     hdi_ritz s;
     z->alpha[0][0] = 1.05;
     z->steps = 1;
-    z->f_norm[0] = z->whole[0] = 1;
+    z->f_norm[0] = 1;
     z->solved = 9;
     z->noise[0][0] = 1e-3;
     CHECK(hdi_krylov_ritz(z, 0, 2, room, &s, &e) == HD_OK && s.mu[0] == 1.05);
@@ -883,20 +883,17 @@ static void int_lane(hdi_lane *lane, const hd_laplacian *lap, int32_t r, hd_cont
 }
 
 /* The error of right-hand side r at time t after z's steps, relative to |f|; the answer is taken as a plan takes it. */
-static double int_krylov_error(hdi_krylov *z, hdi_lane *lane, int32_t r, double t, const dense_pair *pair, double *y,
-                              double *want) {
-    hdi_krylov_sum sum;
+static double int_krylov_error(hdi_krylov *z, hdi_lane *lane, int32_t r, double t, const dense_pair *pair, double *want) {
     hd_error e = int_no_error();
     int32_t i;
-    memset(&sum, 0, sizeof sum);
-    sum.count = r + 1;                           /* of several abreast, only this one is wanted */
-    sum.u[r] = lane[r].u;
-    sum.means[r] = lane[r].sums;
-    for (i = 0; i <= r; i++) sum.y[i] = y + 45 * i;
+    z->n_sums = r + 1;                           /* of several abreast, only this one is wanted */
+    for (i = 0; i < r; i++) z->u[i] = NULL;
+    z->u[r] = lane[r].u;
+    z->means[r] = lane[r].sums;
     CHECK(hdi_krylov_end(z, r, &e) == HD_OK);
-    hdi_krylov_coefficients(z, r, t, y + 45 * r);
-    hdi_krylov_sum_run(z, &sum, z->m->ctx);
-    hdi_krylov_answer(z, r, t, sum.y[r], 0, lane + r, &e);
+    hdi_krylov_coefficients(z, r, t, z->rate, z->y[r]);
+    hdi_krylov_sum_task(z, 0, z->m->lap->n_active);
+    hdi_krylov_answer(z, r, t, z->y[r], 0, lane + r, &e);
     CHECK(e.status == HD_OK);
     z->done[r] = 0;
     dense_pair_heat(pair, t, lane[r].rhs, want);
@@ -910,7 +907,7 @@ static void int_krylov_bound_of(int kind, int32_t wide, double t) {
     static const double factors[5] = {0.03, 0.3, 1, 3, 30};
     const hd_laplacian *lap = kit_pair(kind ? "flat/14/9/0.3 vor" : "bumpy/2/5 fem");
     const int32_t n = lap->n_active, k = wide == 1 ? 1 : 3;
-    double *want = KIT_NEW(double, n), *y = KIT_NEW(double, 45 * 8), room[3 * HDI_KRYLOV_MAX], most[2], loosest = 0;
+    double *want = KIT_NEW(double, n), room[3 * HDI_KRYLOV_MAX], most[2], loosest = 0;
     hdi_krylov *z = KIT_NEW(hdi_krylov, 1);
     hdi_ritz ritz;
     hd_context ctx;
@@ -942,7 +939,7 @@ static void int_krylov_bound_of(int kind, int32_t wide, double t) {
             CHECK(hdi_krylov_ritz(z, r, 2, room, &ritz, &e) == HD_OK);
             hdi_ritz_most(&ritz, at / z->g, most);
             bound = ritz.beta * most[1];
-            error = int_krylov_error(z, lane, r, at, pair, y, want);
+            error = int_krylov_error(z, lane, r, at, pair, want);
             looked++;
             CHECK_MSG(error <= bound + eps, "mesh %d, wide %d, right-hand side %d, step %d, t %g: error %g, bound %g", kind,
                       (int)wide, (int)r,
