@@ -20196,8 +20196,8 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-/* Begins columns of k sources within another call, at its time, with factors the plan holds or makes. Only the
- * lanes' accounts and sums are wanted. */
+/* Begins columns of k sources within another call, at its time, with factors the plan holds or makes. Only
+ * the lanes' accounts and sums are wanted. */
 static void hdi_columns_begin(hdi_heat_call *own, const hdi_heat_call *h, hd_kernel kernel,
                               const hd_rational *set, int32_t k, const hdi_terms *terms) {
     if (hdi_kernel_begin(own, h->heat, kernel, NULL, NULL) < 0) return;
@@ -20231,13 +20231,13 @@ typedef struct hdi_inverses {
     hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
     double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
     hdi_elim_sums of;            /* values of each function, as of weight, or of each pole */
-    double *sum;                 /* those of poles are real and imaginary parts: k and g of a function; NULL */
+    double *sum;                 /* of poles, real and imaginary parts in turn: k and g of a function; NULL */
 } hdi_inverses;
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
 
-/* Makes room for `count` functions, and their sets: times t of the call that share poles to tol or, where t is
- * NULL, the time under way or all filters of the plan. */
+/* Makes room for `count` functions, and their sets: times t of the call that share poles to tol or, where t
+ * is NULL, the time under way or all filters of the plan. */
 static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const double *t, int32_t count,
                                    hdi_wanted wanted, double tol, hdi_scope *s) {
     const hdi_symbolic *sym = &h->heat->elim.sym;
@@ -20323,36 +20323,25 @@ static const double *hdi_inverses_get(const hdi_inverses *x, int32_t q, int boun
     return sum;
 }
 
-/* Errors of a set relative to two forms: that of (B + tL)^-1 and that of B^-1; 0 where bounds hold for the
- * set's own function. */
-static double hdi_set_off_weighted(const hd_rational *set) {
-    return hdi_set_uniform(set) == 0 ? 0 : hdi_set_weighted(set);
-}
-
-/* The smaller of two bounds: weighted times a form, or uniform times another one. */
+/* The smaller of two bounds on errors of a set: weighted times a form of (B + tL)^-1, or uniform times that
+ * of B^-1. */
 static double hdi_set_off(const hd_rational *set, double form, double spread) {
-    const double weighted = hdi_set_off_weighted(set), uniform = hdi_set_uniform(set) * spread;
+    const double weighted = hdi_set_weighted(set), uniform = hdi_set_uniform(set) * spread;
     return hdi_finite(weighted) && hdi_finite(form) ? hdi_min(weighted * form, uniform) : uniform;
-}
-
-/* Place of each of the analysis' entries: row and column in elimination order. */
-static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
-    const int32_t begin = s->super[v], end = s->super[v + 1];
-    *j = begin + s->a_col[n];
-    *i = begin + s->a_row[n];
-    if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
 }
 
 /* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
 static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
     const hdi_symbolic *s = &m->sym;
-    int32_t v, i, j;
+    int32_t v, i;
     int64_t n;
     for (i = 0; i < s->n; i++) diag[i] = a0;
     for (v = 0; v < s->n_super; v++) {
+        const int32_t begin = s->super[v], end = s->super[v + 1];
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
-            hdi_entry_place(s, v, n, &i, &j);
+            const int32_t row = begin + s->a_row[n], j = begin + s->a_col[n];
+            i = row < end ? row : s->row[s->row_ptr[v] + row - end];
             diag[i] += kb;
             if (i != j) diag[j] += kb;
         }
@@ -20391,8 +20380,7 @@ static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
 
 /* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */
 static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
-    if (!(h->left_out > 0)) return 0;
-    return h->left_out * hdi_by_mass(1, mass > 0 ? hdi_mass_row(h->heat->elim.lap, i) : 1, mass);
+    return h->left_out > 0 ? h->left_out * hdi_by_mass(1, hdi_mass_row(h->heat->elim.lap, i), mass) : 0;
 }
 
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
@@ -20473,29 +20461,24 @@ static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d
     return most;
 }
 
-/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss.
- * This is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
+/* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. A pole
+ * beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What is
+ * added is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
  * then does to the inverse in the B norm. Poles further than 1 from the spectrum are left to the probes. */
-static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
-    double sum = 0;
-    int32_t p;
-    for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
-        const double d = hdi_pole_distance(set->theta[p]);
-        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
-        if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
-    }
-    return sum;
-}
-
-/* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. */
 static double hdi_own_rounding(const hd_heat *heat, const hdi_diagonal *d, double t, double seen) {
     const hd_laplacian *lap = heat->elim.lap;
-    const double closeness = hdi_own_near(heat, d->set, t) * (d->full ? hdi_ratio_root(lap) : 1);
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active && closeness > 0; i++)
+    const hd_rational *set = d->set;
+    double near_by = 0, most = 0;
+    int32_t i, p;
+    for (p = 0; p < set->n_poles; p++) {
+        const double apart = hdi_pole_distance(set->theta[p]);
+        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        if (apart < 1) near_by += DBL_EPSILON * hdi_quotient(hdi_quotient(size, apart), apart);
+    }
+    if (d->full) near_by *= hdi_ratio_root(lap);
+    for (i = 0; i < lap->n_active && near_by > 0; i++)
         most = hdi_max(most, hdi_quotient(d->spread[i], hdi_diagonal_size(d, i)));
-    return HDI_PROBE_OWN * seen + closeness * most;
+    return HDI_PROBE_OWN * seen + near_by * most;
 }
 
 /* Rows that were solved for, and where forms are wanted their columns of K by all functions. */
@@ -20620,11 +20603,6 @@ static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inver
 #define HDI_DIAGONAL_SURE_PLAIN 4.2e-7
 #define HDI_DIAGONAL_LOOSE 50
 
-static double hdi_diagonal_limit(const hd_laplacian *lap, int loose) {
-    return (loose ? HDI_DIAGONAL_LOOSE : 1) *
-           (hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
-}
-
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels: tuned. */
 #define HDI_SHARED_TOL 2.5e-8
 #define HDI_SHARED_DISTANCE_TOL 2e-10
@@ -20719,9 +20697,9 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
     return value;
 }
 
-/* Diagonals, or with `trace` traces, of all functions of x or, where it is NULL, of the means that are left at
- * the time under way. The report of each time is in one, or the call's. *relative: the largest rational error
- * relative to its value. */
+/* Diagonals, or with `trace` traces, of all functions of x or, where it is NULL, of the means that are left
+ * at the time under way. The report of each time is in one, or the call's. *relative: the largest rational
+ * error relative to its value. */
 static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace, hd_report *one,
                                     double *relative) {
     hdi_heat_call *h = to->task.h;
@@ -20773,19 +20751,20 @@ static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double
 }
 
 /* The time under way, or all filters, by poles. Tiny cells among large ones and slivers have errors relative
- * to their own value that may be above the promise. The error seen is about a fifth of the bound on all meshes
- * tried. */
+ * to their own value that may be above the promise. The error seen is about a fifth of the bound on all
+ * meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
+    const double limit = hdi_is_plain(heat->source->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
     const int loose = to->D && to->mass > 0 && heat->source->B != NULL;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
     h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     if (h->e->status < 0 ||
         hdi_diagonals_of(to, NULL, hdi_high32(heat->n_sets, 1), NULL, &task->excess) < 0) return h->e->status;
-    task->excess /= hdi_diagonal_limit(heat->source, loose);
+    task->excess /= limit * (loose ? HDI_DIAGONAL_LOOSE : 1);
     return HD_OK;
 }
 
@@ -20964,16 +20943,20 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 85
 
+#define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
+#define HDI_PATCHES_FIT "factors would not fit the byte limit"
+
 typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t stamp, done;         /* of marks; pieces that are answered */
+    int32_t done;                /* pieces that are answered */
     int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
     double wanted;               /* or for own sets so many sqrt(t); so much may be left out */
+    const char *reason;
 } hdi_patches;
 
 /* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
@@ -20981,15 +20964,14 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
     int32_t i, head = 0, tail = 0;
     int64_t p;
-    x->stamp++;
-    for (i = 0; i < n; i++) x->mark[row[i]] = x->stamp;
+    for (i = 0; i < n; i++) x->mark[row[i]] = 1;
     for (i = 0; i < n; i++) {
         const int32_t from = row[last ? n - 1 - i : i];
-        if (x->mark[from] != x->stamp) continue;
+        if (!x->mark[from]) continue;
         x->mark[from] = 0;
         for (x->queue[tail++] = from; head < tail; head++) {
             for (p = L->row_ptr[x->queue[head]]; p < L->row_ptr[x->queue[head] + 1]; p++) {
-                if (x->mark[L->col[p]] != x->stamp) continue;
+                if (!x->mark[L->col[p]]) continue;
                 x->mark[L->col[p]] = 0;
                 x->queue[tail++] = L->col[p];
             }
@@ -21151,22 +21133,6 @@ static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t
     return sum;
 }
 
-/* The largest of a row of squares among the first `count` vertices, or for own sets of the poles' sums. */
-static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
-                             const hd_rational *set) {
-    const hd_laplacian *lap = in->heat->elim.lap;
-    double most = 0;
-    int32_t i, p;
-    for (i = 0; i < lap->n; i++) {
-        double all = set ? 0 : sum[i];
-        for (p = 0; set && p < set->n_poles; p++)
-            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) *
-                   (sum[(2 * (int64_t)p) * lap->n + i] + sum[(2 * (int64_t)p + 1) * lap->n + i]);
-        if (lap->vertex[i] < count) most = hdi_max(most, all);
-    }
-    return most;
-}
-
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
  * falls with time it is that of the earlier one. */
 static double hdi_patch_rate(const double *r, double s) {
@@ -21194,6 +21160,25 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
+/* The largest that rows of squares make of what is left out of entries of the first `count` vertices, over
+ * t^2: by the set's poles, or NULL: by the integral. */
+static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
+                             const hd_rational *set) {
+    const hd_laplacian *lap = in->heat->elim.lap;
+    double most = 0, r[HDI_PATCH_ROWS] = {0};
+    int32_t i, p;
+    for (i = 0; i < lap->n; i++) {
+        const double *own = sum + i;
+        double all = 0;
+        if (lap->vertex[i] >= count) continue;
+        for (p = 0; p < HDI_PATCH_ROWS && !set; p++) r[p] = hdi_max(r[p], sqrt(own[(int64_t)p * lap->n]));
+        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)lap->n)
+            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[lap->n]);
+        most = hdi_max(most, all);
+    }
+    return set ? most : hdi_patch_integral(r);
+}
+
 /* How many columns the diagonals of a query have. */
 static int32_t hdi_diagonals_count(const hdi_heat_call *h) {
     return h->heat->n_sets > 1 ? h->heat->n_sets : h->ask.n_times;
@@ -21216,10 +21201,7 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
         hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
         hd_rational set;
         const double *sum = hdi_patch_squares(x->local, in, own ? in->ask.t[q] : x->t, &set, &s);
-        double r[HDI_PATCH_ROWS], most = 0;
-        for (i = 0; sum && i < HDI_PATCH_ROWS && !own; i++)
-            r[i] = sqrt(hdi_patch_most(in, sum + (int64_t)i * lap->n, count, NULL));
-        if (sum && !own) most = x->t * x->t * hdi_patch_integral(r);
+        double most = sum && !own ? x->t * x->t * hdi_patch_most(in, sum, count, NULL) : 0;
         for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
             if (own) most = hdi_patch_most(in, sum, count, times > 1 ? &set : heat->sets + i);
             off[i] = hdi_bound_of(HDI_PATCH_SAFETY * most / lap->b_ratio) / heat->scale;
@@ -21251,17 +21233,16 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     hd_heat *own = &x->local->heat;
     hdi_diagonals to = *x->to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const uint64_t n = (uint64_t)hdi_diagonals_count(h), values = to.D ? n * (uint64_t)x->local->n : 0;
+    const uint64_t n = (uint64_t)hdi_diagonals_count(h);
     double *left;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
     to.ldd = (size_t)x->local->n;
-    to.D = HDI_TAKE(&s, double, values + 3 * n);
+    if (to.D) to.D = HDI_TAKE(&s, double, n * to.ldd);
+    if (to.Z) to.Z = HDI_TAKE(&s, double, n);
+    to.bound = HDI_TAKE(&s, double, n);
+    left = HDI_TAKE(&s, double, n);
     if (h->e->status < 0) return hdi_scope_end(&s);
-    to.bound = to.D + values;
-    to.Z = x->to->Z ? to.bound + n : NULL;
-    left = to.bound + 2 * n;
-    to.D = x->to->D ? to.D : NULL;
     if (hdi_kernel_begin(&in, own, HD_KERNEL_SYMMETRIC, rep, NULL) >= 0 &&
         hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
         in.core = core;
@@ -21275,23 +21256,20 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     return hdi_scope_end(&s);
 }
 
-/* A wider margin where what is left out is so much too large. */
-static void hdi_patch_widen(hdi_patches *x, int32_t tries, double excess) {
-    const double digits = log(hdi_min(excess, 1e16)) / hdi_max(1, -log(x->wanted));
-    if (x->to->task.h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries, excess);
-    else x->reach = (tries > 1 ? 1.5 : 1.05 + digits) * hdi_max(x->reach, 1e-3);
-}
-
 /* A piece. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     hd_report rep;
     int32_t tries;
     for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
+        double excess;
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
-        if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
-        hdi_patch_widen(x, tries - 1, rep.error_local / x->wanted);
+        excess = hdi_min(rep.error_local / x->wanted, 1e16);
+        if (excess <= 1 || tries == HDI_LOCAL_TRIES) break;
+        if (h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries - 1, excess);
+        else x->reach = hdi_max(x->reach, 1e-3) *
+                        (tries > 2 ? 1.5 : 1.05 + log(excess) / hdi_max(1, -log(x->wanted)));
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21312,6 +21290,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
     x->reach = h->heat->n_sets > 0 ? 0 : 1;
     for (q = 0; q < h->heat->n_sets; q++)
         x->reach = hdi_max(x->reach, hdi_local_reach(h->heat->sets + q, x->wanted));
@@ -21326,14 +21305,15 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     return HD_OK;
 }
 
-/* Does auto take patches for diagonals at the query's times, times factor? Only if a margin is small beside
- * the mesh is it worth while to cut it. */
+/* Do patches serve diagonals at the query's times, times factor: are they asked for, or does auto take them?
+ * Only if a margin is small beside the mesh is it worth while to cut it. */
 static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
-    if (n < HDI_PATCH_FROM || hdi_patches_open(x, to, factor) < 0) return 0;
-    return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
-           hdi_patch_cut(x) < 0 && h->e->status >= 0;
+    const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
+    if ((!asked && n < HDI_PATCH_FROM) || hdi_patches_open(x, to, factor) < 0) return 0;
+    if (!asked && (hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) < 0 || x->local->n > most)) return 0;
+    return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
 /* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
@@ -21354,13 +21334,13 @@ static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
 }
 
 /* Diagonals and traces by patches. */
-static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
+static hd_status hdi_patches_run(hdi_patches *x) {
     const hdi_diagonals *to = x->to;
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t q, v;
     h->relative = 1;
-    h->rep->reason = reason;
+    h->rep->reason = x->reason;
     (void)hdi_patches_range(x, 0, x->n);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
@@ -21378,14 +21358,12 @@ static HDI_INLINE int hdi_patches_can(const hd_heat *heat) {
            (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
 }
 
-#define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
-#define HDI_PATCHES_FIT "factors would not fit the byte limit"
-
-/* A query by patches, if they can serve: by method local, or as fits. */
+/* A query by patches, which can serve. */
 static hd_status hdi_diagonals_by_patches(const hdi_diagonals *to, const char *reason) {
     hdi_patches x;
     if (hdi_patches_open(&x, to, 1) >= 0) (void)hdi_patch_cut(&x);
-    return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x, reason);
+    x.reason = reason;
+    return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x);
 }
 
 /* A query for diagonals, traces or both. */
@@ -21394,8 +21372,7 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     const int may = hdi_patches_can(h->heat);
     const hd_report rep = *h->rep;
     hdi_patches x;
-    if (may && h->heat->opts.method == HD_METHOD_LOCAL) return hdi_diagonals_by_patches(to, "asked for");
-    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x);
     if (h->e->status < 0 || hdi_diagonals_run(h, to) >= 0 || !may || !hdi_over_limit(h->heat->ctx, h->e))
         return h->e->status;
     hdi_error_clear(h->e);
@@ -21428,9 +21405,8 @@ static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64
     for (v = 0; v < lap->n; v++)
         if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
     if (to.n_rows < HDI_PATCH_LEAST) return 0;
-    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
-    else if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
-    else (void)hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
+    (void)hdi_patches_run(&x);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
     return 1;
@@ -21530,7 +21506,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
         x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
         if (x->q == 0) break;
     }
-    weighted = hdi_set_off_weighted(x->in.set);
+    weighted = hdi_set_weighted(x->in.set);
     x->bounded = weighted > 0 && hdi_finite(weighted) && hdi_finite(x->f.sure);
     return HD_OK;
 }
