@@ -20236,6 +20236,11 @@ typedef struct hdi_inverses {
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
 
+/* Which time or filter of the call function q is. */
+static int32_t hdi_inverses_column(const hdi_heat_call *h, const hdi_inverses *x, int32_t q) {
+    return x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
+}
+
 /* Makes room for `count` functions, and their sets: times t of the call that share poles to tol or, where t
  * is NULL, the time under way or all filters of the plan. */
 static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const double *t, int32_t count,
@@ -20549,9 +20554,9 @@ static double hdi_probe_seen(double probe, double off, double value, double size
     return hdi_nan(seen) ? HUGE_VAL : seen;
 }
 
-/* Entry i of diagonal d, which is that of function q, by probe r; in *off a bound on its error. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32_t r, const hdi_inverses *x,
-                              int32_t q, const hdi_diagonal *d, double *off) {
+/* Rounding of an entry of diagonal d, which is that of function q, by probe r. */
+static double hdi_probe_entry(const hd_heat *heat, const hdi_probe *probe, int32_t r, const hdi_inverses *x,
+                              int32_t q, const hdi_diagonal *d) {
     const hd_laplacian *lap = heat->elim.lap;
     const hdi_lane *lane = heat->lane + r;
     const hdi_extra *columns = &probe->columns;
@@ -20561,7 +20566,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
     const double g = d->full ? d->g[i] * (d->g[i] / b) : hdi_by_mass(d->g[i], 1 / b, times);
     const double spread = columns->n > 0 ? b : hdi_inverse_mass(lap, i);
     const hdi_column_parts column = hdi_column_off(lap, lane, set);
-    double value, by_m;
+    double value, by_m, off;
     int64_t p;
     if (columns->n > 0) {
         const double *u = columns->sum + ((int64_t)r * columns->n + q) * lap->n_active;
@@ -20575,22 +20580,18 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
     }
     /* |e_i| is at most sqrt(g) times the norm of B + tL, and sqrt(spread) times that of B */
     by_m = g > 0 && hdi_finite(g) ? sqrt(g) * column.by_m : HUGE_VAL;
-    *off = hdi_min(by_m, sqrt(spread) * column.by_b) + 4 * DBL_EPSILON * fabs(value);
-    *off = hdi_by_mass(*off, b, times);
-    return hdi_by_mass(value, b, times);
+    off = hdi_min(by_m, sqrt(spread) * column.by_b) + 4 * DBL_EPSILON * fabs(value);
+    return hdi_probe_seen(hdi_by_mass(value, b, times), hdi_by_mass(off, b, times), d->value[i],
+                          hdi_diagonal_size(d, i));
 }
 
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
 static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
                                          const hdi_diagonal *d, const hdi_probe *probe) {
-    double rounding = 0, off, there;
+    double rounding = hdi_below_constants(h->heat->elim.lap, d);
     int32_t r;
-    for (r = 0; r < probe->k; r++) {
-        const int32_t i = probe->row[r];
-        there = hdi_probe_value(h->heat, probe, r, x, q, d, &off);
-        rounding = hdi_max(rounding, hdi_probe_seen(there, off, d->value[i], hdi_diagonal_size(d, i)));
-    }
-    rounding = hdi_max(rounding, hdi_below_constants(h->heat->elim.lap, d));
+    for (r = 0; r < probe->k; r++)
+        rounding = hdi_max(rounding, hdi_probe_entry(h->heat, probe, r, x, q, d));
     return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h->heat, d, h->t, rounding) : rounding;
 }
 
@@ -20671,16 +20672,23 @@ static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q
     hdi_ledger_close(&ledger, rep);
 }
 
+/* The number of components that keep their heat. */
+static double hdi_components_kept(const hd_laplacian *lap) {
+    double count = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_components && lap->conserves; i++) count += hdi_finite(lap->component_mass[i]);
+    return count;
+}
+
 /* The trace of function q, from the diagonal of K, which is there. x NULL: only the means are left, of which
  * each component has one. work [n] */
 static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, const hdi_diagonal *d,
                              double rounding, double *work, hdi_parts *off) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    double value = 0, size = 0, form = 0, components = 0;
+    const double components = hdi_components_kept(lap);
+    double value = 0, size = 0, form = 0;
     int32_t i;
     memset(off, 0, sizeof *off);
-    for (i = 0; i < lap->n_components && lap->conserves; i++)
-        components += hdi_finite(lap->component_mass[i]);
     if (!x && h->core == 0) return components;
     if (x && lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
@@ -20711,7 +20719,7 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     int32_t q;
     if (h->e->status < 0 || (x && hdi_probe_run(h, x, 1, &d, &probe, &s) < 0)) return hdi_scope_end(&s);
     for (q = 0; q < (x ? x->count : 1); q++) {
-        const int32_t at = x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
+        const int32_t at = hdi_inverses_column(h, x, q);
         hd_report *rep = one ? one + at : h->rep;
         hdi_ledger ledger;
         double seen = n * DBL_EPSILON;
@@ -21087,6 +21095,15 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
+/* Adds the squares of by u + v, v [n] by vertices or NULL, to their means. */
+static void hdi_patch_add(const hd_laplacian *lap, double by, const double *u, const double *v, double *sum) {
+    int32_t i;
+    for (i = 0; i < lap->n; i++) {
+        const double y = by * u[i] + (v ? v[lap->vertex[i]] : 0);
+        sum[i] += y * (y / (double)HDI_PATCH_PROBES);
+    }
+}
+
 /* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
  * patch's vertices: with rows [n] in elimination order by hdi_patch_weights. */
 static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t, hd_rational *set,
@@ -21122,12 +21139,9 @@ static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t
         c.rows = rows;
         if (hdi_columns_run(in, &c) < 0) return NULL;
         for (j = 0; j < HDI_PATCH_BLOCK * rows.n; j++) {
-            const double *u = rows.sum + (int64_t)j * n, *v = V + (int64_t)(j / rows.n) * n;
             const int32_t row = j % rows.n;
-            for (i = 0; i < n; i++) {
-                const double y = by * u[i] + (own && row % 2 == 0 ? v[in->heat->elim.lap->vertex[i]] : 0);
-                sum[(int64_t)row * n + i] += y * (y / (double)HDI_PATCH_PROBES);
-            }
+            const double *v = own && row % 2 == 0 ? V + (int64_t)(j / rows.n) * n : NULL;
+            hdi_patch_add(in->heat->elim.lap, by, rows.sum + (int64_t)j * n, v, sum + (int64_t)row * n);
         }
     }
     return sum;
@@ -22673,7 +22687,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_patches p;
     hd_rational set;
     double pieces;
-    int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
+    int pays;
     if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
@@ -22690,9 +22704,9 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
-    if (!asked && !pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
+    if (!pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
     x->to->method = HD_METHOD_LOCAL;
-    x->to->reason = asked ? "asked for" : pays ? HDI_PATCHES_PAY : HDI_PATCHES_FIT;
+    x->to->reason = pays ? p.reason : HDI_PATCHES_FIT;
     return HD_OK;
 }
 
