@@ -20230,8 +20230,8 @@ typedef struct hdi_inverses {
     int64_t *place;              /* [n] of the diagonal among them; NULL: they are the diagonal */
     hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
     double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
-    hdi_elim_sums of;            /* values of each function, as of weight, or of each pole */
-    double *sum;                 /* of poles, real and imaginary parts in turn: k and g of a function; NULL */
+    hdi_elim_sums of;            /* values as of weight, or of the poles, real and imaginary parts in turn */
+    double *sum;                 /* of poles: [2 of.stride] k and g of the function at hand; else NULL */
 } hdi_inverses;
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
@@ -21279,8 +21279,8 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
         double excess;
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
+        if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
         excess = hdi_min(rep.error_local / x->wanted, 1e16);
-        if (excess <= 1 || tries == HDI_LOCAL_TRIES) break;
         if (h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries - 1, excess);
         else x->reach = hdi_max(x->reach, 1e-3) *
                         (tries > 2 ? 1.5 : 1.05 + log(excess) / hdi_max(1, -log(x->wanted)));
