@@ -20021,37 +20021,24 @@ static void hdi_inverse_tell(hdi_heat_call *h) {
     h->rep->factor_nnz = h->heat->elim.sym.nnz;
 }
 
-/* Columns within another call, at its time, with factors the plan holds or makes. Only the lanes' accounts
- * and sums are wanted. */
-typedef struct hdi_columns {
-    hd_kernel kernel;
-    const hd_rational *set;
-    int32_t k, watching;
-    const hdi_terms *terms;      /* [k] sources */
-    hdi_extra rows;              /* of every column; n = 0: none */
-    int32_t n_off;               /* functions, whose sets follow set */
-    hdi_column_parts *off;       /* [k][n_off] how much residuals change their columns */
-} hdi_columns;
+/* Begins columns of k sources within another call, at its time, with factors the plan holds or makes. Only
+ * the lanes' accounts and sums are wanted. */
+static void hdi_columns_begin(hdi_heat_call *own, const hdi_heat_call *h, hd_kernel kernel,
+                              const hd_rational *set, int32_t k, const hdi_terms *terms) {
+    if (hdi_kernel_begin(own, h->heat, kernel, NULL, NULL) < 0) return;
+    own->t = h->t;
+    own->ask.k = k;
+    own->ask.terms = terms;
+    own->method = HD_METHOD_DIRECT;
+    own->set = set;
+    own->lap = h->heat->elim.lap;
+}
 
-/* Computes the columns. The larger residual stays in the report. */
-static hd_status hdi_direct_columns(hdi_heat_call *h, const hdi_columns *c) {
-    hdi_heat_call own;
-    hd_report rep;
-    if (hdi_kernel_begin(&own, h->heat, c->kernel, &rep, NULL) >= 0) {
-        own.t = h->t;
-        own.ask.k = c->k;
-        own.ask.terms = c->terms;
-        own.method = HD_METHOD_DIRECT;
-        own.set = c->set;
-        own.watching = c->watching;
-        own.rows = c->rows;
-        own.n_off = c->n_off;
-        own.off = c->off;
-        own.lap = h->heat->elim.lap;
-        (void)hdi_heat_by_direct(&own);
-    }
-    if (hdi_heat_end(&own) < 0) *h->e = rep.error;
-    h->rep->residual = hdi_max(h->rep->residual, rep.residual);
+/* Computes them. The larger residual stays in the report. */
+static hd_status hdi_columns_run(hdi_heat_call *h, hdi_heat_call *own) {
+    if (own->e->status >= 0) (void)hdi_heat_by_direct(own);
+    if (hdi_heat_end(own) < 0) *h->e = own->rep->error;
+    h->rep->residual = hdi_max(h->rep->residual, own->rep->residual);
     return h->e->status;
 }
 
@@ -20064,40 +20051,46 @@ typedef struct hdi_inverses {
     int32_t count;
     const double *t;             /* [count] scaled times, the first is that of the factors; NULL: all are */
     hd_rational *set;            /* [count] in terms of their own times */
-    hdi_wanted wanted;
-    int64_t size;                /* of the values of one function */
     int64_t *place;              /* [n] of the diagonal among them; NULL: they are the diagonal */
     hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
     double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
-    int by_pole;                 /* values are those of the poles, real and imaginary parts in turn */
-    double *values;              /* [2 count or 2 n_poles][size] */
-    double *sum;                 /* by_pole: [2 size] k and g of the function at hand */
+    hdi_elim_sums of;            /* values as of weight, or of the poles, real and imaginary parts in turn */
+    double *sum;                 /* of poles: [2 of.stride] k and g of the function at hand; else NULL */
 } hdi_inverses;
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
 
-/* Place of each row's diagonal entry among the analysis' entries. */
-static void hdi_inverses_places(const hdi_symbolic *s, int64_t *place) {
-    int32_t v;
-    int64_t at;
-    for (v = 0; v < s->n_super; v++)
-        for (at = s->a_ptr[v]; at < s->a_ptr[v + 1]; at++)
-            if (s->a_row[at] == s->a_col[at]) place[s->super[v] + s->a_col[at]] = at;
+/* Which time or filter of the call function q is. */
+static int32_t hdi_inverses_column(const hdi_heat_call *h, const hdi_inverses *x, int32_t q) {
+    return x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
 }
 
-/* Makes room for `count` functions, whose sets have to be filled in. */
-static hd_status hdi_inverses_take(hdi_inverses *x, const hdi_heat_call *h, int32_t count, hdi_wanted wanted,
-                                   hdi_scope *s) {
+/* Makes room for `count` functions, and their sets: times t of the call that share poles to tol or, where t
+ * is NULL, the time under way or all filters of the plan. */
+static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const double *t, int32_t count,
+                                   hdi_wanted wanted, double tol, hdi_scope *s) {
     const hdi_symbolic *sym = &h->heat->elim.sym;
+    int64_t at;
+    int32_t v, q;
     memset(x, 0, sizeof *x);
     x->count = count;
-    x->wanted = wanted;
-    x->size = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
+    x->t = t;
+    x->of.wanted = wanted;
+    x->of.stride = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
     x->set = HDI_TAKE_ZERO(s, hd_rational, count);
     x->slack = HDI_TAKE(s, double, count);
     if (wanted == HDI_WANT_ENTRIES) x->place = HDI_TAKE(s, int64_t, sym->n);
-    if (x->place && s->e->status >= 0) hdi_inverses_places(sym, x->place);
-    return s->e->status;
+    if (h->e->status < 0) return h->e->status;
+    for (v = 0; v < sym->n_super && x->place; v++)
+        for (at = sym->a_ptr[v]; at < sym->a_ptr[v + 1]; at++)
+            if (sym->a_row[at] == sym->a_col[at]) x->place[sym->super[v] + sym->a_col[at]] = at;
+    if (t) return hdi_rational_shared(x->set, count, t, tol, h->heat->ctx, h->e);
+    if (count == 1) return hdi_heat_set(h, x->set);
+    for (q = 0; q < count; q++) {
+        x->set[q] = h->heat->sets[q];
+        x->set[q].kind = HD_POLES_OWN;
+    }
+    return HD_OK;
 }
 
 /* Weights for k, and for g: by least squares, or those of a single pole. */
@@ -20117,85 +20110,67 @@ static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
 static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *s) {
     hdi_elim *m = &h->heat->elim;
     const int32_t n_poles = x->set->n_poles, n_sets = 2 * hdi_low32(x->count, hdi_high32(n_poles, 1));
-    const size_t weights = 2 * (size_t)x->count * (size_t)n_poles;
-    hdi_elim_sums sums;
+    const int by_pole = n_sets < 2 * x->count;
+    hd_c64 *unit;
     hd_status status;
     int32_t q;
-    x->by_pole = n_sets < 2 * x->count;
-    x->weight = HDI_TAKE_ZERO(s, hd_c64, weights + (size_t)n_sets * (size_t)n_poles);
-    x->values = HDI_TAKE_ZERO(s, double, (uint64_t)n_sets * (uint64_t)x->size);
-    if (x->by_pole) x->sum = HDI_TAKE(s, double, 2 * (uint64_t)x->size);
+    x->weight = HDI_TAKE_ZERO(s, hd_c64, (2 * (uint64_t)x->count + (uint64_t)n_sets) * (uint64_t)n_poles);
+    x->of.n_sets = n_sets;
+    x->of.values = HDI_TAKE_ZERO(s, double, (uint64_t)n_sets * (uint64_t)x->of.stride);
+    if (by_pole) x->sum = HDI_TAKE(s, double, 2 * (uint64_t)x->of.stride);
     if (h->e->status < 0) return h->e->status;
+    unit = x->weight + 2 * (size_t)x->count * (size_t)n_poles;
+    x->of.weight = by_pole ? unit : x->weight;
     if (x->t) h->t = x->t[0];
     h->set = x->set;
     h->lap = m->lap;
-    status = hdi_direct_factors(h, x->wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, n_sets);
+    status = hdi_direct_factors(h, x->of.wanted == HDI_WANT_FORMS ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE,
+                                n_sets);
     h->set = NULL;
     if (status < 0) return status;
     for (q = 0; q < x->count; q++) hdi_inverses_weigh(x, q);
-    sums.weight = x->by_pole ? x->weight + weights : x->weight;
-    for (q = 0; q < n_sets && x->by_pole; q++)
-        x->weight[weights + (size_t)(q * n_poles + q / 2)] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
-    sums.n_sets = n_sets;
-    sums.wanted = x->wanted;
-    sums.values = x->values;
-    sums.stride = x->size;
+    for (q = 0; q < n_sets && by_pole; q++)
+        unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
-    return hdi_elim_invert(m, &sums, h->e);
+    return hdi_elim_invert(m, &x->of, h->e);
 }
 
 /* The values of function q: k, or with `bound` g before its factor. */
 static const double *hdi_inverses_get(const hdi_inverses *x, int32_t q, int bound) {
     const int32_t n_poles = x->set->n_poles;
-    const hd_c64 *w = x->weight + (2 * (size_t)q + (size_t)bound) * (size_t)n_poles;
-    double *HDI_RESTRICT sum = x->sum + (bound ? x->size : 0);
-    int64_t i;
+    const size_t size = (size_t)x->of.stride, row = 2 * (size_t)q + (size_t)bound;
+    const hd_c64 *w = x->weight + row * (size_t)n_poles;
+    double *HDI_RESTRICT sum = x->sum ? x->sum + (bound ? size : 0) : NULL;
+    size_t i;
     int32_t p;
-    if (!x->by_pole) return x->values + (2 * (size_t)q + (size_t)bound) * (size_t)x->size;
-    memset(sum, 0, (size_t)x->size * sizeof *sum);
+    if (!sum) return x->of.values + row * size;
+    memset(sum, 0, size * sizeof *sum);
     for (p = 0; p < n_poles; p++) {
-        const double *re = x->values + 2 * (size_t)p * (size_t)x->size, *im = re + x->size;
-        for (i = 0; i < x->size; i++) sum[i] += w[p].re * re[i] - w[p].im * im[i];
+        const double *re = x->of.values + 2 * (size_t)p * size, *im = re + size;
+        for (i = 0; i < size; i++) sum[i] += w[p].re * re[i] - w[p].im * im[i];
     }
     return sum;
 }
 
-/* The diagonal entry of (B + tL)^-1, or of that of forms with B, from g: a bound where the slack is
- * finite, else a guess, which serves to measure rounding. */
-static double hdi_inverses_bound(const hdi_inverses *x, int32_t q, double g, double constants) {
-    return hdi_max(g, constants) * (hdi_finite(x->slack[q]) ? x->slack[q] : 1);
-}
-
-/* Errors of a set relative to two forms: that of (B + tL)^-1 and that of B^-1; 0 where bounds hold for the
- * set's own function. */
-static double hdi_set_off_weighted(const hd_rational *set) {
-    return hdi_set_uniform(set) == 0 ? 0 : hdi_set_weighted(set);
-}
-
-/* The smaller of two bounds: weighted times a form, or uniform times another one. */
+/* The smaller of two bounds on errors of a set: weighted times a form of (B + tL)^-1, or uniform times that
+ * of B^-1. */
 static double hdi_set_off(const hd_rational *set, double form, double spread) {
-    const double weighted = hdi_set_off_weighted(set), uniform = hdi_set_uniform(set) * spread;
+    const double weighted = hdi_set_weighted(set), uniform = hdi_set_uniform(set) * spread;
     return hdi_finite(weighted) && hdi_finite(form) ? hdi_min(weighted * form, uniform) : uniform;
-}
-
-/* Place of each of the analysis' entries: row and column in elimination order. */
-static void hdi_entry_place(const hdi_symbolic *s, int32_t v, int64_t n, int32_t *i, int32_t *j) {
-    const int32_t begin = s->super[v], end = s->super[v + 1];
-    *j = begin + s->a_col[n];
-    *i = begin + s->a_row[n];
-    if (*i >= end) *i = s->row[s->row_ptr[v] + *i - end];
 }
 
 /* a0 + diag(k B) for a full B, from the entries of k on the pattern of B. */
 static void hdi_operator_diagonal(const hdi_elim *m, double a0, const double *k, double *diag) {
     const hdi_symbolic *s = &m->sym;
-    int32_t v, i, j;
+    int32_t v, i;
     int64_t n;
     for (i = 0; i < s->n; i++) diag[i] = a0;
     for (v = 0; v < s->n_super; v++) {
+        const int32_t begin = s->super[v], end = s->super[v + 1];
         for (n = s->a_ptr[v]; n < s->a_ptr[v + 1]; n++) {
             const double kb = k[n] * m->source->B[s->a_from[n]] * m->scale;
-            hdi_entry_place(s, v, n, &i, &j);
+            const int32_t row = begin + s->a_row[n], j = begin + s->a_col[n];
+            i = row < end ? row : s->row[s->row_ptr[v] + row - end];
             diag[i] += kb;
             if (i != j) diag[j] += kb;
         }
@@ -20226,8 +20201,7 @@ static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
 
 /* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */
 static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
-    if (!(h->left_out > 0)) return 0;
-    return h->left_out * hdi_by_mass(1, mass > 0 ? hdi_mass_row(h->heat->elim.lap, i) : 1, mass);
+    return h->left_out > 0 ? h->left_out * hdi_by_mass(1, hdi_mass_row(h->heat->elim.lap, i), mass) : 0;
 }
 
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
@@ -20253,22 +20227,22 @@ static double hdi_diagonal_size(const hdi_diagonal *d, int32_t i) {
     return d->g[i] > 0 && d->g[i] < d->spread[i] ? d->g[i] : d->spread[i];
 }
 
-/* The diagonal of function q. */
+/* The diagonal of function q. Without a slack g is a guess, which serves to measure rounding. */
 static void hdi_diagonal_read(const hd_heat *heat, const hdi_inverses *x, int32_t q, hdi_diagonal *d) {
     const hdi_elim *m = &heat->elim;
     const hd_laplacian *lap = m->lap;
-    const int forms = x->wanted == HDI_WANT_FORMS;
+    const int forms = x->of.wanted == HDI_WANT_FORMS, sure = hdi_finite(x->slack[q]);
     const double a0 = x->set[q].a0, *k = hdi_inverses_get(x, q, 0), *g = hdi_inverses_get(x, q, 1);
     int32_t i;
     d->set = x->set + q;
     d->full = lap->B && d->mass == 1;
     d->left_out = lap->B && d->mass == 0 ? fabs(a0) : 0;
-    d->sure = hdi_finite(x->slack[q]) ? 1 : HUGE_VAL;
+    d->sure = sure ? 1 : HUGE_VAL;
     if (d->full) hdi_operator_diagonal(m, a0, k, d->value);
     for (i = 0; i < m->sym.n; i++) {
         const int64_t at = x->place ? x->place[i] : i;
         const double b = lap->b_diag[i], mass = forms ? lap->mass[i] * lap->mass[i] : 1;
-        const double bound = hdi_inverses_bound(x, q, g[at], mass * hdi_constant_part(lap, i));
+        const double bound = hdi_max(g[at], mass * hdi_constant_part(lap, i)) * (sure ? x->slack[q] : 1);
         d->spread[i] = d->mass == 0 ? hdi_inverse_mass(lap, i) : d->mass == 1 ? hdi_ratio_root(lap) : b;
         d->g[i] = d->full ? sqrt(bound * b) : forms ? bound : hdi_by_mass(bound, b, d->mass);
         if (forms) d->value[i] = k[at] + a0 * b;
@@ -20308,29 +20282,24 @@ static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d
     return most;
 }
 
-/* A pole beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss.
- * This is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
+/* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. A pole
+ * beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What is
+ * added is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
  * then does to the inverse in the B norm. Poles further than 1 from the spectrum are left to the probes. */
-static double hdi_own_near(const hd_heat *heat, const hd_rational *set, double t) {
-    double sum = 0;
-    int32_t p;
-    for (p = 0; p < set->n_poles && set->kind == HD_POLES_OWN; p++) {
-        const double d = hdi_pole_distance(set->theta[p]);
-        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
-        if (d < 1) sum += DBL_EPSILON * hdi_quotient(hdi_quotient(size, d), d);
-    }
-    return sum;
-}
-
-/* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. */
 static double hdi_own_rounding(const hd_heat *heat, const hdi_diagonal *d, double t, double seen) {
     const hd_laplacian *lap = heat->elim.lap;
-    const double closeness = hdi_own_near(heat, d->set, t) * (d->full ? hdi_ratio_root(lap) : 1);
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active && closeness > 0; i++)
+    const hd_rational *set = d->set;
+    double near_by = 0, most = 0;
+    int32_t i, p;
+    for (p = 0; p < set->n_poles; p++) {
+        const double apart = hdi_pole_distance(set->theta[p]);
+        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        if (apart < 1) near_by += DBL_EPSILON * hdi_quotient(hdi_quotient(size, apart), apart);
+    }
+    if (d->full) near_by *= hdi_ratio_root(lap);
+    for (i = 0; i < lap->n_active && near_by > 0; i++)
         most = hdi_max(most, hdi_quotient(d->spread[i], hdi_diagonal_size(d, i)));
-    return HDI_PROBE_OWN * seen + closeness * most;
+    return HDI_PROBE_OWN * seen + near_by * most;
 }
 
 /* Rows that were solved for, and where forms are wanted their columns of K by all functions. */
@@ -20343,19 +20312,15 @@ typedef struct hdi_probe {
 static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
     hdi_probe x;
     double most[2] = {-1, -1};
-    int32_t i, q, at[HDI_PROBES] = {-1, -1, -1};
+    int32_t i, q, at[HDI_PROBES] = {-1, -1, also};
     for (i = 0; i < lap->n_active; i++) {
-        const double l = hdi_row_diagonal(lap, i);
-        if (l / lap->b_diag[i] > most[0]) {
-            most[0] = l / lap->b_diag[i];
-            at[0] = i;
-        }
-        if (l * k[i] > most[1]) {
-            most[1] = l * k[i];
-            at[1] = i;
+        const double l = hdi_row_diagonal(lap, i), size[2] = {l / lap->b_diag[i], l * k[i]};
+        for (q = 0; q < 2; q++) {
+            if (!(size[q] > most[q])) continue;
+            most[q] = size[q];
+            at[q] = i;
         }
     }
-    at[2] = also;
     memset(&x, 0, sizeof x);
     for (i = 0; i < HDI_PROBES; i++) {
         for (q = 0; q < x.k && x.row[q] != at[i]; q++) {}
@@ -20369,8 +20334,10 @@ static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_
 static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int worst, hdi_diagonal *d,
                                hdi_probe *probe, hdi_scope *s) {
     const hd_laplacian *lap = h->heat->elim.lap;
+    const hd_kernel kernel = lap->B && d->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
     hdi_terms source[HDI_PROBES];
-    hdi_columns c;
+    hdi_heat_call c;
+    hdi_extra *rows = &probe->columns;
     int32_t i, at = -1;
     double most = 0;
     hdi_diagonal_read(h->heat, x, x->count - 1, d);
@@ -20381,22 +20348,19 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int wors
         most = off;
     }
     *probe = hdi_probe_rows(lap, d->value, at);
-    memset(&c, 0, sizeof c);
-    if (x->wanted == HDI_WANT_FORMS) {
-        c.rows.n = x->count;
-        c.rows.weight = x->weight;
-        c.rows.stride = 2 * x->set->n_poles;
-        c.rows.sum = HDI_TAKE(s, double, (uint64_t)HDI_PROBES * (uint64_t)x->count * (uint64_t)lap->n_active);
-        if (!c.rows.sum) return h->e->status;
+    if (x->of.wanted == HDI_WANT_FORMS) {
+        rows->n = x->count;
+        rows->weight = x->weight;
+        rows->stride = 2 * x->set->n_poles;
+        rows->sum = HDI_TAKE(s, double, (uint64_t)HDI_PROBES * (uint64_t)x->count * (uint64_t)lap->n_active);
+        if (!rows->sum) return h->e->status;
     }
-    probe->columns = c.rows;
+    if (probe->k == 0) return h->e->status;
     for (i = 0; i < probe->k; i++) source[i] = hdi_terms_vertex(lap->vertex[probe->row[i]]);
-    c.kernel = lap->B && d->mass > 0 ? HD_KERNEL_OPERATOR : HD_KERNEL_SYMMETRIC;
-    c.set = x->set;
-    c.k = probe->k;
-    c.terms = source;
+    hdi_columns_begin(&c, h, kernel, x->set, probe->k, source);
     c.watching = 1;
-    return probe->k > 0 ? hdi_direct_columns(h, &c) : h->e->status;
+    c.rows = *rows;
+    return hdi_columns_run(h, &c);
 }
 
 /* Rounding of a value, relative to size, by a probe whose own error is at most off. It is infinite if the
@@ -20406,9 +20370,9 @@ static double hdi_probe_seen(double probe, double off, double value, double size
     return hdi_nan(seen) ? HUGE_VAL : seen;
 }
 
-/* Entry i of diagonal d, which is that of function q, by probe r; in *off a bound on its error. */
-static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32_t r, const hdi_inverses *x,
-                              int32_t q, const hdi_diagonal *d, double *off) {
+/* Rounding of an entry of diagonal d, which is that of function q, by probe r. */
+static double hdi_probe_entry(const hd_heat *heat, const hdi_probe *probe, int32_t r, const hdi_inverses *x,
+                              int32_t q, const hdi_diagonal *d) {
     const hd_laplacian *lap = heat->elim.lap;
     const hdi_lane *lane = heat->lane + r;
     const hdi_extra *columns = &probe->columns;
@@ -20418,7 +20382,7 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
     const double g = d->full ? d->g[i] * (d->g[i] / b) : hdi_by_mass(d->g[i], 1 / b, times);
     const double spread = columns->n > 0 ? b : hdi_inverse_mass(lap, i);
     const hdi_column_parts column = hdi_column_off(lap, lane, set);
-    double value, by_m;
+    double value, by_m, off;
     int64_t p;
     if (columns->n > 0) {
         const double *u = columns->sum + ((int64_t)r * columns->n + q) * lap->n_active;
@@ -20432,22 +20396,18 @@ static double hdi_probe_value(const hd_heat *heat, const hdi_probe *probe, int32
     }
     /* |e_i| is at most sqrt(g) times the norm of B + tL, and sqrt(spread) times that of B */
     by_m = g > 0 && hdi_finite(g) ? sqrt(g) * column.by_m : HUGE_VAL;
-    *off = hdi_min(by_m, sqrt(spread) * column.by_b) + 4 * DBL_EPSILON * fabs(value);
-    *off = hdi_by_mass(*off, b, times);
-    return hdi_by_mass(value, b, times);
+    off = hdi_min(by_m, sqrt(spread) * column.by_b) + 4 * DBL_EPSILON * fabs(value);
+    return hdi_probe_seen(hdi_by_mass(value, b, times), hdi_by_mass(off, b, times), d->value[i],
+                          hdi_diagonal_size(d, i));
 }
 
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
 static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
                                          const hdi_diagonal *d, const hdi_probe *probe) {
-    double rounding = 0, off, there;
+    double rounding = hdi_below_constants(h->heat->elim.lap, d);
     int32_t r;
-    for (r = 0; r < probe->k; r++) {
-        const int32_t i = probe->row[r];
-        there = hdi_probe_value(h->heat, probe, r, x, q, d, &off);
-        rounding = hdi_max(rounding, hdi_probe_seen(there, off, d->value[i], hdi_diagonal_size(d, i)));
-    }
-    rounding = hdi_max(rounding, hdi_below_constants(h->heat->elim.lap, d));
+    for (r = 0; r < probe->k; r++)
+        rounding = hdi_max(rounding, hdi_probe_entry(h->heat, probe, r, x, q, d));
     return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h->heat, d, h->t, rounding) : rounding;
 }
 
@@ -20459,11 +20419,6 @@ static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inver
 #define HDI_DIAGONAL_SURE 5.3e-7
 #define HDI_DIAGONAL_SURE_PLAIN 4.2e-7
 #define HDI_DIAGONAL_LOOSE 50
-
-static double hdi_diagonal_limit(const hd_laplacian *lap, int loose) {
-    return (loose ? HDI_DIAGONAL_LOOSE : 1) *
-           (hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE);
-}
 
 /* Largest weighted error of shared sets for diagonals, and for distances, where much cancels: tuned. */
 #define HDI_SHARED_TOL 2.5e-8
@@ -20487,11 +20442,12 @@ static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
 }
 
 /* The ledger of values found by inversion. */
-static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hd_rational *set, int relative) {
-    const int exact_a0 = set->a0 == 0 || !h->heat->source->B;
-    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 && exact_a0;
-    const hd_evidence rational = h->equal || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
-    hdi_ledger ledger = hdi_ledger_begin(rational, HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, relative);
+static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hdi_diagonal *d) {
+    const hd_rational *set = d->set;
+    const int exact = !set || (set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 &&
+                               (set->a0 == 0 || !h->heat->source->B));
+    hdi_ledger ledger = hdi_ledger_begin(exact ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
+                                         HD_EVIDENCE_MEASURED, 1);
     if (h->left_out > 0) ledger.evidence.local = HD_EVIDENCE_MEASURED;
     return ledger;
 }
@@ -20532,34 +20488,44 @@ static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q
     hdi_ledger_close(&ledger, rep);
 }
 
-/* The trace of function q, from the diagonal of K, which is there. work [n] */
+/* The number of components that keep their heat. */
+static double hdi_components_kept(const hd_laplacian *lap) {
+    double count = 0;
+    int32_t i;
+    for (i = 0; i < lap->n_components && lap->conserves; i++) count += hdi_finite(lap->component_mass[i]);
+    return count;
+}
+
+/* The trace of function q, from the diagonal of K, which is there. x NULL: only the means are left, of which
+ * each component has one. work [n] */
 static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, const hdi_diagonal *d,
                              double rounding, double *work, hdi_parts *off) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    double value = 0, size = 0, form = 0, components = 0;
+    const double components = hdi_components_kept(lap);
+    double value = 0, size = 0, form = 0;
     int32_t i;
     memset(off, 0, sizeof *off);
-    if (lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
+    if (!x && h->core == 0) return components;
+    if (x && lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
         if (!hdi_row_counts(h, i)) continue;
         value += d->value[i];
         off->local += hdi_diagonal_left_out(h, 1, i);
         size += hdi_diagonal_size(d, i);
-        form += lap->B ? work[i] * x->slack[q] : d->g[i];
+        form += x && lap->B ? work[i] * x->slack[q] : d->g[i];
     }
-    for (i = 0; i < lap->n_components && lap->conserves; i++)
-        components += hdi_finite(lap->component_mass[i]);
+    off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
+    if (!x) return value;
     form = hdi_finite(x->slack[q]) ? hdi_max(form, components) : HUGE_VAL;
     off->rational = hdi_set_off(d->set, form, h->core > 0 ? h->core : lap->n_active);
-    off->rounding = rounding * size + 4 * DBL_EPSILON * fabs(value);
     return value;
 }
 
-/* Diagonals, or with `trace` traces, of all functions of x. Function q belongs to time column[q] of the
- * query, and its report is one[column[q]], or the call's. *relative: the largest rational error relative
- * to its value. */
-static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace,
-                                    const int32_t *column, hd_report *one, double *relative) {
+/* Diagonals, or with `trace` traces, of all functions of x or, where it is NULL, of the means that are left
+ * at the time under way. The report of each time is in one, or the call's. *relative: the largest rational
+ * error relative to its value. */
+static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace, hd_report *one,
+                                    double *relative) {
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const int32_t n = h->heat->elim.sym.n;
@@ -20567,85 +20533,62 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     double *work = trace && h->heat->source->B ? HDI_TAKE(&s, double, n) : NULL;
     hdi_probe probe;
     int32_t q;
-    if (h->e->status < 0 || hdi_probe_run(h, x, 1, &d, &probe, &s) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < x->count; q++) {
-        hd_report *rep = one ? one + column[q] : h->rep;
+    if (h->e->status < 0 || (x && hdi_probe_run(h, x, 1, &d, &probe, &s) < 0)) return hdi_scope_end(&s);
+    for (q = 0; q < (x ? x->count : 1); q++) {
+        const int32_t at = hdi_inverses_column(h, x, q);
+        hd_report *rep = one ? one + at : h->rep;
         hdi_ledger ledger;
-        double seen;
+        double seen = n * DBL_EPSILON;
         hdi_parts off;
-        if (h->left) h->left_out = h->left[column[q]];
-        ledger = hdi_inverse_ledger(h, x->set + q, 1);
+        if (h->left) h->left_out = h->left[at];
         if (rep != h->rep && !rep->reason) *rep = *h->rep;
-        hdi_diagonal_read(h->heat, x, q, &d);
-        seen = hdi_diagonal_seen(h, x, q, &d, &probe);
+        if (x) hdi_diagonal_read(h->heat, x, q, &d);
+        else hdi_diagonal_means(h->heat->elim.lap, &d);
+        if (x) seen = hdi_diagonal_seen(h, x, q, &d, &probe);
+        ledger = hdi_inverse_ledger(h, &d);
         if (trace) {
             const double value = hdi_trace_read(h, x, q, &d, seen, work, &off);
-            hdi_trace_tell(to, ledger, column[q], value, off, rep);
+            hdi_trace_tell(to, ledger, at, value, off, rep);
             *relative = hdi_max(*relative, hdi_quotient(off.rational, fabs(value)));
         } else {
-            double *out = to->D + (size_t)column[q] * to->ldd;
+            double *out = to->D + (size_t)at * to->ldd;
             *relative = hdi_max(*relative, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
         }
     }
     return hdi_scope_end(&s);
 }
 
-/* All that is wanted of functions whose sets are there. */
-static hd_status hdi_diagonals_of(const hdi_diagonals *to, hdi_inverses *x, const int32_t *column,
-                                  hd_report *one, double *relative, hdi_scope *s) {
+/* All that is wanted of the time under way or of the filters, or with t at `count` times by one set of
+ * poles. */
+static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double *t, int32_t count,
+                                           hd_report *one, double *relative) {
     hdi_heat_call *h = to->task.h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
+    hdi_inverses own, *x = h->equal ? NULL : &own;
     h->relative = 1;
     *relative = 0;
-    if (hdi_inverses_run(h, x, s) < 0) return h->e->status;
-    if (to->D && hdi_diagonals_read(to, x, 0, column, one, relative) < 0) return h->e->status;
-    return to->Z ? hdi_diagonals_read(to, x, 1, column, one, relative) : HD_OK;
-}
-
-/* Time q where t is so large that k_t(i,i) = 1/mass of the component. */
-static HDI_COLD hd_status hdi_diagonals_equal(const hdi_diagonals *to, int32_t q, hd_report *rep) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const hd_laplacian *lap = h->heat->elim.lap;
-    hdi_diagonal d = hdi_diagonal_take(lap->n_active, to->mass, &s);
-    const hdi_parts off = {0, 0, 0, 0};
-    double count = 0;
-    int32_t i;
-    h->equal = h->relative = 1;
-    for (i = 0; i < lap->n_components; i++) count += hdi_finite(lap->component_mass[i]);
-    if (h->e->status >= 0) {
-        const hdi_ledger ledger = hdi_inverse_ledger(h, &h->heat->elim.set, 1);
-        hdi_diagonal_means(lap, &d);
-        if (to->D)
-            (void)hdi_diagonal_tell(h, &d, ledger, (double)lap->n_active * DBL_EPSILON,
-                                    to->D + (size_t)q * to->ldd, rep);
-        if (to->Z) hdi_trace_tell(to, ledger, q, count, off, rep);
-    }
-    h->equal = 0;
+    if (x && hdi_inverses_take(x, h, t, count, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
+        (void)hdi_inverses_run(h, x, &s);
+    if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 0, one, relative);
+    if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 1, one, relative);
     return hdi_scope_end(&s);
 }
 
-/* The time under way by the set for it. *relative as above. */
-static hd_status hdi_diagonals_once(const hdi_diagonals *to, double *relative) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_inverses x;
-    if (hdi_inverses_take(&x, h, 1, hdi_diagonals_wanted(to), &s) >= 0 && hdi_heat_set(h, x.set) >= 0)
-        (void)hdi_diagonals_of(to, &x, &h->now, NULL, relative, &s);
-    return hdi_scope_end(&s);
-}
-
-/* The time under way by poles. Tiny cells among large ones and slivers have errors relative to their own
- * value that may be above the promise. The error seen is about a fifth of the bound on all meshes tried. */
+/* The time under way, or all filters, by poles. Tiny cells among large ones and slivers have errors relative
+ * to their own value that may be above the promise. The error seen is about a fifth of the bound on all
+ * meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
+    const double limit = hdi_is_plain(heat->source->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
     const int loose = to->D && to->mass > 0 && heat->source->B != NULL;
     if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
     hdi_inverse_tell(h);
-    if (hdi_heat_equal(heat, &heat->elim, h->t, h->e)) return hdi_diagonals_equal(to, h->now, h->rep);
-    if (h->e->status < 0 || hdi_diagonals_once(to, &task->excess) < 0) return h->e->status;
-    task->excess /= hdi_diagonal_limit(heat->source, loose);
+    h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
+    if (h->e->status < 0 ||
+        hdi_diagonals_of(to, NULL, hdi_high32(heat->n_sets, 1), NULL, &task->excess) < 0) return h->e->status;
+    task->excess /= limit * (loose ? HDI_DIAGONAL_LOOSE : 1);
     return HD_OK;
 }
 
@@ -20684,24 +20627,10 @@ static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi
     return h->e->status;
 }
 
-/* Room for times q0 to q1 - 1 of the call, sorted, and the sets that they share. */
-static hd_status hdi_window_take(hdi_inverses *x, hdi_heat_call *h, int32_t q0, int32_t q1, hdi_wanted wanted,
-                                 double tol, hdi_scope *s) {
-    if (hdi_inverses_take(x, h, q1 - q0, wanted, s) < 0) return h->e->status;
-    x->t = h->times + q0;
-    return hdi_rational_shared(x->set, x->count, x->t, tol, h->heat->ctx, h->e);
-}
-
 /* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static HDI_COLD hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
-    const hdi_diagonals *to = (const hdi_diagonals *)task;
-    hdi_heat_call *h = task->h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_inverses x;
+static hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     double relative;
-    if (hdi_window_take(&x, h, q0, q1, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
-        (void)hdi_diagonals_of(to, &x, h->time_column + q0, one, &relative, &s);
-    return hdi_scope_end(&s);
+    return hdi_diagonals_of((const hdi_diagonals *)task, task->h->times + q0, q1 - q0, one, &relative);
 }
 
 /* With shared poles where that takes fewer packs; those where only the means are left need none. The
@@ -20711,14 +20640,16 @@ static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *o
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
     const int alone = to->D && to->mass > 0 && heat->source->B;
+    double relative;
     int32_t n;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
     hdi_inverse_tell(h);
     for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e); n--) {
-        const int32_t at = h->time_column[n - 1];
-        one[at] = *h->rep;
-        done[at] = HDI_DONE_FOR_GOOD;
-        if (hdi_diagonals_equal(to, at, one + at) < 0) return h->e->status;
+        h->now = h->time_column[n - 1];
+        h->equal = 1;
+        done[h->now] = HDI_DONE_FOR_GOOD;
+        if (hdi_diagonals_of(to, NULL, 1, one, &relative) < 0) return h->e->status;
+        h->equal = 0;
     }
     if (h->e->status < 0 || !hdi_degree_open(heat) || alone) return h->e->status;
     return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
@@ -20779,35 +20710,14 @@ static HDI_COLD hd_status hdi_diagonals_by_pairs(hdi_task *task) {
     return h->e->status;
 }
 
-/* All sets of the plan, which share their poles. */
-static hd_status hdi_diagonals_filters(const hdi_diagonals *to) {
-    hdi_heat_call *h = to->task.h;
-    const int32_t count = h->heat->n_sets;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    int32_t *column = HDI_TAKE(&s, int32_t, count), q;
-    hdi_inverses x;
-    double relative;
-    if (!column || hdi_heat_analysed(h->heat, h->e) < 0) return hdi_scope_end(&s);
-    hdi_inverse_tell(h);
-    if (hdi_inverses_take(&x, h, count, hdi_diagonals_wanted(to), &s) < 0) return hdi_scope_end(&s);
-    for (q = 0; q < count; q++) {
-        column[q] = q;
-        x.set[q] = h->heat->sets[q];
-        x.set[q].kind = HD_POLES_OWN;
-    }
-    (void)hdi_diagonals_of(to, &x, column, NULL, &relative, &s);
-    return hdi_scope_end(&s);
-}
-
 /* A query for diagonals or traces from one plan. */
-static hd_status hdi_diagonals_run(hdi_heat_call *h, const hdi_diagonals *query) {
-    hdi_diagonals to = *query;
-    hdi_fading_task(&to.task, h);
-    if (h->core > 0) to.task.serves = 0;         /* parts by inversion alone */
-    to.task.pairs = HDI_HAS_MODES ? hdi_diagonals_by_pairs : NULL;
-    to.task.poles = hdi_diagonals_by_poles;
-    to.task.together = hdi_diagonals_together;
-    return h->heat->n_sets > 1 ? hdi_diagonals_filters(&to) : hdi_heat_sparing(h, &to.task);
+static hd_status hdi_diagonals_run(hdi_heat_call *h, hdi_diagonals *to) {
+    hdi_fading_task(&to->task, h);
+    if (h->core > 0) to->task.serves = 0;        /* parts by inversion alone */
+    to->task.pairs = HDI_HAS_MODES ? hdi_diagonals_by_pairs : NULL;
+    to->task.poles = hdi_diagonals_by_poles;
+    to->task.together = hdi_diagonals_together;
+    return h->heat->n_sets > 1 ? hdi_diagonals_by_poles(&to->task) : hdi_heat_sparing(h, &to->task);
 }
 
 /* Checks that there is selected inversion, and that it is allowed. */
@@ -20857,16 +20767,20 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 85
 
+#define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
+#define HDI_PATCHES_FIT "factors would not fit the byte limit"
+
 typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t stamp, done;         /* of marks; pieces that are answered */
+    int32_t done;                /* pieces that are answered */
     int32_t core;                /* pieces have so many rows at most */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
     double wanted;               /* or for own sets so many sqrt(t); so much may be left out */
+    const char *reason;
 } hdi_patches;
 
 /* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
@@ -20874,15 +20788,14 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
     int32_t i, head = 0, tail = 0;
     int64_t p;
-    x->stamp++;
-    for (i = 0; i < n; i++) x->mark[row[i]] = x->stamp;
+    for (i = 0; i < n; i++) x->mark[row[i]] = 1;
     for (i = 0; i < n; i++) {
         const int32_t from = row[last ? n - 1 - i : i];
-        if (x->mark[from] != x->stamp) continue;
+        if (!x->mark[from]) continue;
         x->mark[from] = 0;
         for (x->queue[tail++] = from; head < tail; head++) {
             for (p = L->row_ptr[x->queue[head]]; p < L->row_ptr[x->queue[head] + 1]; p++) {
-                if (x->mark[L->col[p]] != x->stamp) continue;
+                if (!x->mark[L->col[p]]) continue;
                 x->mark[L->col[p]] = 0;
                 x->queue[tail++] = L->col[p];
             }
@@ -20998,6 +20911,15 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
+/* Adds the squares of by u + v, v [n] by vertices or NULL, to their means. */
+static void hdi_patch_add(const hd_laplacian *lap, double by, const double *u, const double *v, double *sum) {
+    int32_t i;
+    for (i = 0; i < lap->n; i++) {
+        const double y = by * u[i] + (v ? v[lap->vertex[i]] : 0);
+        sum[i] += y * (y / (double)HDI_PATCH_PROBES);
+    }
+}
+
 /* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
  * patch's vertices: with rows [n] in elimination order by hdi_patch_weights. */
 static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t, hd_rational *set,
@@ -21009,57 +20931,36 @@ static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t
     int32_t *id = HDI_TAKE(s, int32_t, n), i, j, q, own;
     hd_c64 *weight = HDI_TAKE(s, hd_c64, 2 * HD_MAX_POLES * HD_MAX_POLES);
     hdi_terms terms[HDI_PATCH_BLOCK];
-    hdi_columns c;
+    hdi_extra rows;
+    hdi_heat_call c;
     in->t = hdi_heat_scaled(in->heat, t);
     if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
     own = set->kind == HD_POLES_OWN;
     by = in->heat->scale * (own ? t : 1);
-    memset(&c, 0, sizeof c);
-    c.rows.n = own ? 2 * set->n_poles : HDI_PATCH_ROWS;
-    c.rows.sum = HDI_TAKE(s, double, HDI_PATCH_BLOCK * (uint64_t)n * (uint64_t)hdi_high32(c.rows.n, 4));
-    sum = HDI_TAKE_ZERO(s, double, (uint64_t)n * (uint64_t)c.rows.n);
+    rows.n = own ? 2 * set->n_poles : HDI_PATCH_ROWS;
+    rows.stride = HD_MAX_POLES;
+    rows.weight = weight;
+    rows.sum = HDI_TAKE(s, double, HDI_PATCH_BLOCK * (uint64_t)n * (uint64_t)hdi_high32(rows.n, 4));
+    sum = HDI_TAKE_ZERO(s, double, (uint64_t)n * (uint64_t)rows.n);
     if (in->e->status < 0) return NULL;
     for (i = 0; i < n; i++) id[i] = i;
     for (q = 0; q < HDI_PATCH_BLOCK; q++) {
         const hdi_terms one = {n, 0, id, C + (int64_t)q * n};
         terms[q] = one;
     }
-    for (q = 0; q < c.rows.n; q++) hdi_patch_weights(set, q, work, weight + q * HD_MAX_POLES);
-    c.kernel = HD_KERNEL_SYMMETRIC;
-    c.set = set;
-    c.k = HDI_PATCH_BLOCK;
-    c.terms = terms;
-    c.rows.stride = HD_MAX_POLES;
-    c.rows.weight = weight;
+    for (q = 0; q < rows.n; q++) hdi_patch_weights(set, q, work, weight + q * HD_MAX_POLES);
     for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
-        if (hdi_patch_probes(l, q, C, V, c.rows.sum, in->e) < 0 || hdi_direct_columns(in, &c) < 0)
-            return NULL;
-        for (j = 0; j < HDI_PATCH_BLOCK * c.rows.n; j++) {
-            const double *u = c.rows.sum + (int64_t)j * n, *v = V + (int64_t)(j / c.rows.n) * n;
-            const int32_t row = j % c.rows.n;
-            for (i = 0; i < n; i++) {
-                const double y = by * u[i] + (own && row % 2 == 0 ? v[in->heat->elim.lap->vertex[i]] : 0);
-                sum[(int64_t)row * n + i] += y * (y / (double)HDI_PATCH_PROBES);
-            }
+        if (hdi_patch_probes(l, q, C, V, rows.sum, in->e) < 0) return NULL;
+        hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, HDI_PATCH_BLOCK, terms);
+        c.rows = rows;
+        if (hdi_columns_run(in, &c) < 0) return NULL;
+        for (j = 0; j < HDI_PATCH_BLOCK * rows.n; j++) {
+            const int32_t row = j % rows.n;
+            const double *v = own && row % 2 == 0 ? V + (int64_t)(j / rows.n) * n : NULL;
+            hdi_patch_add(in->heat->elim.lap, by, rows.sum + (int64_t)j * n, v, sum + (int64_t)row * n);
         }
     }
     return sum;
-}
-
-/* The largest of a row of squares among the first `count` vertices, or for own sets of the poles' sums. */
-static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
-                             const hd_rational *set) {
-    const hd_laplacian *lap = in->heat->elim.lap;
-    double most = 0;
-    int32_t i, p;
-    for (i = 0; i < lap->n; i++) {
-        double all = set ? 0 : sum[i];
-        for (p = 0; set && p < set->n_poles; p++)
-            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) *
-                   (sum[(2 * (int64_t)p) * lap->n + i] + sum[(2 * (int64_t)p + 1) * lap->n + i]);
-        if (lap->vertex[i] < count) most = hdi_max(most, all);
-    }
-    return most;
 }
 
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
@@ -21089,6 +20990,25 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
+/* The largest that rows of squares make of what is left out of entries of the first `count` vertices, over
+ * t^2: by the set's poles, or NULL: by the integral. */
+static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
+                             const hd_rational *set) {
+    const hd_laplacian *lap = in->heat->elim.lap;
+    double most = 0, r[HDI_PATCH_ROWS] = {0};
+    int32_t i, p;
+    for (i = 0; i < lap->n; i++) {
+        const double *own = sum + i;
+        double all = 0;
+        if (lap->vertex[i] >= count) continue;
+        for (p = 0; p < HDI_PATCH_ROWS && !set; p++) r[p] = hdi_max(r[p], sqrt(own[(int64_t)p * lap->n]));
+        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)lap->n)
+            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[lap->n]);
+        most = hdi_max(most, all);
+    }
+    return set ? most : hdi_patch_integral(r);
+}
+
 /* How many columns the diagonals of a query have. */
 static int32_t hdi_diagonals_count(const hdi_heat_call *h) {
     return h->heat->n_sets > 1 ? h->heat->n_sets : h->ask.n_times;
@@ -21111,10 +21031,7 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
         hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
         hd_rational set;
         const double *sum = hdi_patch_squares(x->local, in, own ? in->ask.t[q] : x->t, &set, &s);
-        double r[HDI_PATCH_ROWS], most = 0;
-        for (i = 0; sum && i < HDI_PATCH_ROWS && !own; i++)
-            r[i] = sqrt(hdi_patch_most(in, sum + (int64_t)i * lap->n, count, NULL));
-        if (sum && !own) most = x->t * x->t * hdi_patch_integral(r);
+        double most = sum && !own ? x->t * x->t * hdi_patch_most(in, sum, count, NULL) : 0;
         for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
             if (own) most = hdi_patch_most(in, sum, count, times > 1 ? &set : heat->sets + i);
             off[i] = hdi_bound_of(HDI_PATCH_SAFETY * most / lap->b_ratio) / heat->scale;
@@ -21146,17 +21063,16 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     hd_heat *own = &x->local->heat;
     hdi_diagonals to = *x->to;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    const uint64_t n = (uint64_t)hdi_diagonals_count(h), values = to.D ? n * (uint64_t)x->local->n : 0;
+    const uint64_t n = (uint64_t)hdi_diagonals_count(h);
     double *left;
     if (hdi_local_plan(h->heat, x->local, h->e) < 0) return hdi_scope_end(&s);
     own->opts.method = HD_METHOD_DIRECT;
     to.ldd = (size_t)x->local->n;
-    to.D = HDI_TAKE(&s, double, values + 3 * n);
+    if (to.D) to.D = HDI_TAKE(&s, double, n * to.ldd);
+    if (to.Z) to.Z = HDI_TAKE(&s, double, n);
+    to.bound = HDI_TAKE(&s, double, n);
+    left = HDI_TAKE(&s, double, n);
     if (h->e->status < 0) return hdi_scope_end(&s);
-    to.bound = to.D + values;
-    to.Z = x->to->Z ? to.bound + n : NULL;
-    left = to.bound + 2 * n;
-    to.D = x->to->D ? to.D : NULL;
     if (hdi_kernel_begin(&in, own, HD_KERNEL_SYMMETRIC, rep, NULL) >= 0 &&
         hdi_times_check(&in, h->ask.n_times, h->ask.t, 1) >= 0) {
         in.core = core;
@@ -21169,23 +21085,20 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     return hdi_scope_end(&s);
 }
 
-/* A wider margin where what is left out is so much too large. */
-static void hdi_patch_widen(hdi_patches *x, int32_t tries, double excess) {
-    const double digits = log(hdi_min(excess, 1e16)) / hdi_max(1, -log(x->wanted));
-    if (x->to->task.h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries, excess);
-    else x->reach = (tries > 1 ? 1.5 : 1.05 + digits) * hdi_max(x->reach, 1e-3);
-}
-
 /* A piece. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     hd_report rep;
     int32_t tries;
     for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
+        double excess;
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
-        hdi_patch_widen(x, tries - 1, rep.error_local / x->wanted);
+        excess = hdi_min(rep.error_local / x->wanted, 1e16);
+        if (h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries - 1, excess);
+        else x->reach = hdi_max(x->reach, 1e-3) *
+                        (tries > 2 ? 1.5 : 1.05 + log(excess) / hdi_max(1, -log(x->wanted)));
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21206,6 +21119,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
+    x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
     x->reach = h->heat->n_sets > 0 ? 0 : 1;
     for (q = 0; q < h->heat->n_sets; q++)
         x->reach = hdi_max(x->reach, hdi_local_reach(h->heat->sets + q, x->wanted));
@@ -21220,14 +21134,15 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     return HD_OK;
 }
 
-/* Does auto take patches for diagonals at the query's times, times factor? Only if a margin is small beside
- * the mesh is it worth while to cut it. */
+/* Do patches serve diagonals at the query's times, times factor: are they asked for, or does auto take them?
+ * Only if a margin is small beside the mesh is it worth while to cut it. */
 static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double factor) {
     hdi_heat_call *h = to->task.h;
     const int32_t n = h->heat->source->n_active, most = n / 16;
-    if (n < HDI_PATCH_FROM || hdi_patches_open(x, to, factor) < 0) return 0;
-    return hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) >= 0 && x->local->n <= most &&
-           hdi_patch_cut(x) < 0 && h->e->status >= 0;
+    const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
+    if ((!asked && n < HDI_PATCH_FROM) || hdi_patches_open(x, to, factor) < 0) return 0;
+    if (!asked && (hdi_patch_find(x, x->n / 2, x->n / 2 + 1, most) < 0 || x->local->n > most)) return 0;
+    return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
 /* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
@@ -21248,13 +21163,13 @@ static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
 }
 
 /* Diagonals and traces by patches. */
-static hd_status hdi_patches_run(hdi_patches *x, const char *reason) {
+static hd_status hdi_patches_run(hdi_patches *x) {
     const hdi_diagonals *to = x->to;
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t q, v;
     h->relative = 1;
-    h->rep->reason = reason;
+    h->rep->reason = x->reason;
     (void)hdi_patches_range(x, 0, x->n);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
@@ -21272,14 +21187,12 @@ static HDI_INLINE int hdi_patches_can(const hd_heat *heat) {
            (asked ? n > 0 : heat->opts.method == HD_METHOD_AUTO && n >= HDI_LOCAL_FROM);
 }
 
-#define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
-#define HDI_PATCHES_FIT "factors would not fit the byte limit"
-
-/* A query by patches, if they can serve: by method local, or as fits. */
+/* A query by patches, which can serve. */
 static hd_status hdi_diagonals_by_patches(const hdi_diagonals *to, const char *reason) {
     hdi_patches x;
     if (hdi_patches_open(&x, to, 1) >= 0) (void)hdi_patch_cut(&x);
-    return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x, reason);
+    x.reason = reason;
+    return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x);
 }
 
 /* A query for diagonals, traces or both. */
@@ -21288,8 +21201,7 @@ static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
     const int may = hdi_patches_can(h->heat);
     const hd_report rep = *h->rep;
     hdi_patches x;
-    if (may && h->heat->opts.method == HD_METHOD_LOCAL) return hdi_diagonals_by_patches(to, "asked for");
-    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x);
     if (h->e->status < 0 || hdi_diagonals_run(h, to) >= 0 || !may || !hdi_over_limit(h->heat->ctx, h->e))
         return h->e->status;
     hdi_error_clear(h->e);
@@ -21322,9 +21234,8 @@ static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64
     for (v = 0; v < lap->n; v++)
         if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
     if (to.n_rows < HDI_PATCH_LEAST) return 0;
-    if (h->heat->opts.method == HD_METHOD_LOCAL) (void)hdi_diagonals_by_patches(&to, "asked for");
-    else if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
-    else (void)hdi_patches_run(&x, HDI_PATCHES_PAY);
+    if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
+    (void)hdi_patches_run(&x);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
     return 1;
@@ -21424,7 +21335,7 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
         x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
         if (x->q == 0) break;
     }
-    weighted = hdi_set_off_weighted(x->in.set);
+    weighted = hdi_set_weighted(x->in.set);
     x->bounded = weighted > 0 && hdi_finite(weighted) && hdi_finite(x->f.sure);
     return HD_OK;
 }
@@ -21536,8 +21447,8 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
         hdi_diagonal_means(h->lap, &x->f);
         *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
     } else if (h->e->status >= 0) {
-        if (hdi_inverses_take(&x->in, h, 1, hdi_metric_wanted(heat, kind), s) >= 0 &&
-            hdi_heat_set(h, x->in.set) >= 0) (void)hdi_metric_invert(x, s);
+        if (hdi_inverses_take(&x->in, h, NULL, 1, hdi_metric_wanted(heat, kind), 0, s) >= 0)
+            (void)hdi_metric_invert(x, s);
     }
     return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, bounded, s);
 }
@@ -21628,20 +21539,16 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
 
 /* The columns of k sources, x->group at most. */
 static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, int32_t k) {
-    hdi_columns c;
+    hdi_heat_call c;
     int32_t i, q;
     if (x->local) return hdi_metric_solve_ball(x, source);
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
     if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
-    memset(&c, 0, sizeof c);
-    c.kernel = hdi_distance_kernel(x->kind);
-    c.set = x->in.set;
-    c.k = k;
-    c.terms = source;
+    hdi_columns_begin(&c, x->h, hdi_distance_kernel(x->kind), x->in.set, k, source);
     c.rows = x->rows;
     c.n_off = x->in.count;
     c.off = x->off;
-    if (hdi_direct_columns(x->h, &c) < 0) return x->h->e->status;
+    if (hdi_columns_run(x->h, &c) < 0) return x->h->e->status;
     for (i = 0; i < k; i++)
         for (q = 0; q < x->in.count; q++) {
             hdi_metric_finish(x, source + i, x->in.set[q].a0, hdi_metric_sum(x, i, q, 0));
@@ -22027,8 +21934,8 @@ static HDI_COLD hd_status hdi_distances_window(const hdi_task *task, int32_t q0,
     hdi_metric x;
     int32_t q;
     if (hdi_metric_take(&x, h, to->of.kind, count, &s) >= 0 &&
-        hdi_window_take(&x.in, h, q0, q1, hdi_metric_wanted(h->heat, to->of.kind), HDI_SHARED_DISTANCE_TOL,
-                        &s) >= 0 &&
+        hdi_inverses_take(&x.in, h, h->times + q0, count, hdi_metric_wanted(h->heat, to->of.kind),
+                          HDI_SHARED_DISTANCE_TOL, &s) >= 0 &&
         hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
         for (q = 0; q < count; q++) one[column[q]] = *h->rep;
         (void)hdi_distances_of(to, &x, column, one);
@@ -22594,7 +22501,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_patches p;
     hd_rational set;
     double pieces;
-    int asked = heat->opts.method == HD_METHOD_LOCAL, pays;
+    int pays;
     if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
@@ -22611,9 +22518,9 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));
-    if (!asked && !pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
+    if (!pays && x->to->cost[HD_METHOD_DIRECT].bytes <= hdi_bytes_left(heat->ctx)) return HD_OK;
     x->to->method = HD_METHOD_LOCAL;
-    x->to->reason = asked ? "asked for" : pays ? HDI_PATCHES_PAY : HDI_PATCHES_FIT;
+    x->to->reason = pays ? p.reason : HDI_PATCHES_FIT;
     return HD_OK;
 }
 

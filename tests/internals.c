@@ -1420,13 +1420,41 @@ static void int_few_tasks(void) {
 #endif
 }
 
+/* Where only means are left a component counts once in traces, in however many patches it lies. */
+static void int_patches_means(void) {
+    static const char *const specs[2] = {"flat/24/24/0.3 fem", "bumpy/3/1 vor"};
+    int32_t k, v;
+    for (k = 0; k < 2; k++) {
+        const hd_laplacian *lap = kit_pair(specs[k]);
+        const double t = 1e12 * trial_unit(lap);
+        double *D = KIT_NEW(double, lap->n), Z, bound;
+        hdi_diagonals to;
+        hdi_heat_call h;
+        hdi_patches x;
+        CHECK(hdi_kernel_begin(&h, kit_heat(lap, "method=local"), HD_KERNEL_OPERATOR, NULL, NULL) >= 0 && hdi_times_check(&h, 1, &t, 1) >= 0);
+        memset(&to, 0, sizeof to);
+        to.task.h = &h;
+        to.mass = 1;
+        to.D = D;
+        to.ldd = (size_t)lap->n;
+        to.Z = &Z;
+        to.bound = &bound;
+        CHECK(hdi_patches_open(&x, &to, 1) >= 0);
+        x.core = x.n / 3;
+        CHECK(hdi_patches_run(&x) >= 0 && h.rep->n_patches > 2 && h.rep->n_touched == lap->n);
+        CHECK_MSG(fabs(Z - 1) <= bound && bound < 1e-9, "%s: 1 and %g, bound %g", specs[k], Z - 1, bound);
+        for (v = 0; v < lap->n; v++) CHECK(fabs(D[v] - lap->mass[lap->row[v]] / lap->component_mass[0]) < 1e-9 * D[v]);
+        (void)hdi_heat_end(&h);
+    }
+}
+
 /* The tests, in groups that free what they made. */
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_least_squares, int_exp_rest, int_patches, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
