@@ -18641,22 +18641,23 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
  * that makes is bounded by hdi_rim_bound; where it is too much, the ball grows. */
 
 /* Forgets the ball, but not the pair that was made of it. */
-static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
+static void hdi_local_clear(hdi_local *l) {
+    const hd_csr *L = &l->source->L;
     int64_t p;
     for (; l->n > 0; l->n--) {
         const int32_t i = l->at[l->n - 1].row;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) l->place[lap->L.col[p]] = 0;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) l->place[L->col[p]] = 0;
     }
 }
 
 /* Adds a row that is as far as `at` says. */
-static hd_status hdi_local_put(hdi_local *l, hdi_reached at, hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_put(hdi_local *l, hdi_reached at, hd_error *e) {
     if (l->n == l->room) {
         const int64_t room = 2 * l->room + 64;
-        hdi_reached *more = HDI_NEW(ctx, hdi_reached, room, e);
+        hdi_reached *more = HDI_NEW(l->heat.ctx, hdi_reached, room, e);
         if (!more) return e->status;
         if (l->n > 0) memcpy(more, l->at, (size_t)l->n * sizeof *more);
-        hdi_free(ctx, l->at);
+        hdi_free(l->heat.ctx, l->at);
         l->at = more;
         l->room = room;
     }
@@ -18679,8 +18680,8 @@ static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
 
 /* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
  * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
-static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t row, hd_context *ctx,
-                               hd_error *e) {
+static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
+    const hd_laplacian *lap = l->source;
     hdi_reached at = {0, 0, row, row};
     double sum = 0;
     int64_t p;
@@ -18689,15 +18690,15 @@ static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t ro
         sum += fabs(lap->L.val[p]) * (edge * edge);
     }
     at.unit = sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
-    return hdi_local_put(l, at, ctx, e);
+    return hdi_local_put(l, at, e);
 }
 
 /* Adds the rows that edges lead to from those that are there: all that are less than `hops` edges away, and
  * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
  * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
  * nearer than at first are followed again. */
-static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double hops,
-                                int32_t most, hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t most, hd_error *e) {
+    const hd_laplacian *lap = l->source;
     int32_t i, first = 0, next, level = 0, level_end = l->n;
     int64_t p;
     for (; first < l->n && l->n <= most; first = next) {
@@ -18714,7 +18715,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
                 at.row = lap->L.col[p];
                 at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
                 if (there < 0 && (at.way <= reach || level < hops)) {
-                    if (hdi_local_put(l, at, ctx, e) < 0) return e->status;
+                    if (hdi_local_put(l, at, e) < 0) return e->status;
                 } else if (there >= 0 && l->at[there].way > at.way) {
                     l->at[there] = at;
                     next = there < i ? hdi_low32(next, there) : next;
@@ -18725,27 +18726,30 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
     return e->status;
 }
 
-/* Counts the entries inside the ball, and the edges to the rows around it, which it numbers. */
-static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim) {
-    int64_t nnz = 0, p;
+/* Where the rows of the ball begin in its pair, in begin [n + 1]. Rows around the ball are numbered, and
+ * counted with the edges to them. */
+static void hdi_local_count(hdi_local *l, hdi_rim *rim, int64_t *begin) {
+    const hd_csr *L = &l->source->L;
+    int64_t p;
     int32_t i;
     memset(rim, 0, sizeof *rim);
-    for (i = 0; i < l->n; i++) {
+    for (i = 0, begin[0] = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
-        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
-            int32_t *place = l->place + lap->L.col[p];
-            nnz += *place > 0;
+        begin[i + 1] = begin[i];
+        for (p = L->row_ptr[row]; p < L->row_ptr[row + 1]; p++) {
+            int32_t *place = l->place + L->col[p];
+            begin[i + 1] += *place > 0;
             rim->n_edges += *place <= 0;
             if (*place == 0) *place = -(++rim->n);
         }
     }
-    return nnz;
 }
 
 /* Fills the rows of the ball, and the edges that leave it. Entries are put as in hdi_pair_refresh. d, id:
  * room of the rim. */
-static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *rim,
-                           double *d, int32_t *id, int64_t *fill) {
+static void hdi_local_fill(const hdi_local *l, hd_laplacian *out, hdi_rim *rim, double *d, int32_t *id,
+                           int64_t *fill) {
+    const hd_laplacian *lap = l->source;
     double *edge_l = d + rim->n, *edge_b = edge_l + rim->n_edges;
     int64_t p, e = 0;
     int32_t i, c, conserves = lap->conserves;
@@ -18792,24 +18796,19 @@ static void hdi_local_range(const hd_laplacian *lap, double *least, double *most
     }
 }
 
-/* How many entries of a row lie in the ball. */
-static int64_t hdi_local_inside(const hdi_local *l, const hd_laplacian *lap, int32_t row) {
-    int64_t count = 0, p;
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) count += l->place[lap->L.col[p]] > 0;
-    return count;
-}
-
 /* The pair of the ball with its rim. If nothing is around it, it is made of whole components, which may
  * conserve heat. *rows: what its vertices are in the source. */
-static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim, int32_t **rows,
-                                    hd_context *ctx, hd_error *e) {
-    const int64_t n = l->n, nnz = hdi_local_count(l, lap, rim), m = rim->n_edges;
+static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, hd_error *e) {
+    const hd_laplacian *lap = l->source;
+    const int64_t n = l->n;
+    hd_context *ctx = l->heat.ctx;
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n);
+    int64_t *fill = HDI_TAKE(&s, int64_t, n + 1);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
     double least, most, *d;
     int32_t i;
     if (!out) return (void)hdi_scope_end(&s), out;
+    hdi_local_count(l, rim, fill);
     keep = hdi_lap_keep(out, e);
     *out = *lap;
     out->context = ctx;
@@ -18818,11 +18817,11 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
     out->n = out->n_active = (int32_t)n;
     out->n_components = rim->n > 0 ? 1 : lap->n_components;
     out->conserves = rim->n > 0 ? 0 : lap->conserves;
-    out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
-    out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
+    out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, fill[n], 1);
+    out->B = lap->B ? HDI_TAKE(keep, double, fill[n]) : NULL;
     out->component_mass = HDI_TAKE(keep, double, out->n_components);
-    out->mass = HDI_TAKE(keep, double, 5 * n + 3 * (int64_t)rim->n + 2 * m);
-    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
+    out->mass = HDI_TAKE(keep, double, 5 * n + 3 * (int64_t)rim->n + 2 * (int64_t)rim->n_edges);
+    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * (int64_t)rim->n_edges);
     if (e->status >= 0) {
         d = out->mass + (lap->B ? 2 : 1) * n;
         out->b_diag = d - n;
@@ -18831,13 +18830,10 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
         *rows = out->component + n;
         for (i = 0; i < out->n_components; i++)
             out->component_mass[i] = rim->n > 0 ? HUGE_VAL : lap->component_mass[i];
-        for (i = 0; i < n; i++) {
-            const int32_t from = (*rows)[i] = l->at[i].row;
-            out->vertex[i] = i;
-            fill[i] = out->L.row_ptr[i];
-            out->L.row_ptr[i + 1] = fill[i] + hdi_local_inside(l, lap, from);
-        }
-        hdi_local_fill(l, lap, out, rim, d + 3 * n, *rows + n, fill);
+        for (i = 0; i < n; i++) (*rows)[i] = l->at[i].row;
+        hdi_fill_own(out->vertex, (int32_t)n);
+        memcpy(out->L.row_ptr, fill, (size_t)(n + 1) * sizeof *fill);
+        hdi_local_fill(l, out, rim, d + 3 * n, *rows + n, fill);
         hdi_local_range(out, &least, &most);
         rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
         out->lambda_max = hdi_lambda_known(out);
@@ -18891,7 +18887,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     hd_heat *own = &l->heat;
     hdi_rim rim;
     int32_t *row = NULL;
-    hd_laplacian *ball = hdi_local_pair(l, heat->source, &rim, &row, heat->ctx, e);
+    hd_laplacian *ball = hdi_local_pair(l, &rim, &row, e);
     if (!ball) return e->status;
     if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
         own->source = own->elim.source = own->few.source = ball;
@@ -18913,71 +18909,80 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     return e->status;
 }
 
-/* The radius of a ball in edges, where sqrt(t) is so many: it leaves 1e-8 to 1e-7 of the peak. Without places
- * ways go over edges, and are longer than straight ones by the first number. */
+/* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
+ * then, as errors fall like exp(-R^2/4t). */
+#define HDI_LOCAL_SHARE 100
+enum { HDI_LOCAL_TRIES = 6 };
+
+/* The first reach of balls. Without sets it is 1: the ball leaves out 1e-8 to 1e-7 of the peak. With sets, of
+ * which the first `count` are asked for, it is the radius in sqrt(t) beyond which the solutions of the poles,
+ * which fall like exp(-Re sqrt(theta) d/sqrt(t)), are below what may be left out. */
+static double hdi_local_reach(const hd_heat *heat, int32_t count) {
+    const double tol = HDI_LOCAL_SHARE * heat->opts.tol;
+    double reach = heat->n_sets > 0 ? 0 : 1;
+    int32_t q, p;
+    for (q = 0; q < hdi_low32(count, heat->n_sets); q++) {
+        const hd_rational *set = heat->sets + q;
+        for (p = 0; p < set->n_poles; p++) {
+            const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
+            const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
+            reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
+        }
+    }
+    return reach;
+}
+
+/* A larger reach where what is left out is so much too large: as a Gaussian asks for, or poles, and where
+ * that has not helped twice, for distances are not what they seem, half as far again. */
+static double hdi_local_more(const hd_heat *heat, double reach, int32_t tries, double excess) {
+    const double digits = log(hdi_min(excess, 1e16)), all = -log(HDI_LOCAL_SHARE * heat->opts.tol);
+    if (heat->n_sets > 0) return (tries > 1 ? 1.5 : 1.05 + digits / hdi_max(1, all)) * hdi_max(reach, 1e-3);
+    return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * digits) + 0.03;
+}
+
+/* The radius of a ball of this reach where edges are so long and the root of t is `root`. Without places ways
+ * go over edges, and are longer than straight ones by the first number. */
 #define HDI_LOCAL_TURNS 1.36
 
-static double hdi_local_edges(const hd_laplacian *lap, double edges) {
-    return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (4 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
+static double hdi_local_radius(const hd_heat *heat, double edge, double root, double reach) {
+    const double turns = heat->source->xyz ? 1 : HDI_LOCAL_TURNS;
+    if (heat->n_sets > 0) return turns * (4 * edge + reach * root);
+    return turns * reach * (4 * edge + root * (8.6 + 0.55 * log(hdi_max(root / edge, 1))));
 }
 
 /* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
  * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
 #define HDI_LOCAL_DIGITS 23
 
-static double hdi_local_hops(const hd_laplacian *lap) {
-    const double root = sqrt(hdi_max(lap->b_ratio, 1e-30) / 2);
-    return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
+static double hdi_local_hops(const hd_heat *heat, double reach) {
+    const double root = sqrt(hdi_max(heat->source->b_ratio, 1e-30) / 2);
+    const double hops = heat->source->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
+    return (heat->n_sets > 0 ? 1 : reach) * hops;
 }
 
-/* The radius in sqrt(t) beyond which the solutions of a set's poles, which fall like exp(-Re sqrt(theta)
- * d/sqrt(t)), are below tol times the largest value of their sum. Without a set 1: see hdi_local_find. */
-static double hdi_local_reach(const hd_rational *set, double tol) {
-    double reach = set ? 0 : 1;
-    int32_t p;
-    for (p = 0; set && p < set->n_poles; p++) {
-        const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
-        const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
-        reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
-    }
-    return reach;
-}
-
-/* Finds the ball of item q, or that of a row in the middle if items are not known. reach: without a set as a
- * multiple of what is usual. */
+/* Finds the ball of item q, or that of a row in the middle if items are not known; stops beyond `most`
+ * rows. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
     const double root = sqrt(h->times[h->n_times - 1] / h->heat->scale);
-    const int poles = h->heat->poles_asked;
-    hd_context *ctx = h->heat->ctx;
     hdi_terms c = hdi_terms_vertex(lap->vertex[lap->n_active / 2]);
-    double edge, edges;
+    double radius;
     int32_t i;
-    hdi_local_clear(l, lap);
+    hdi_local_clear(l);
     if (h->ask.F) {
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         for (i = 0; i < lap->n_active && l->n <= most; i++)
-            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, lap, i, ctx, h->e) < 0) break;
+            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, i, h->e) < 0) break;
     } else {
         if (h->ask.terms || h->ask.list) c = hdi_heat_source(h, q);
         for (i = 0; i < c.n && h->e->status >= 0; i++) {
             const int32_t row = lap->row[hdi_terms_at(&c, i)];
-            if (row >= 0) (void)hdi_local_add(l, lap, row, ctx, h->e);
+            if (row >= 0) (void)hdi_local_add(l, row, h->e);
         }
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
-    edge = hdi_local_edge(lap, l->at[0].row);
-    edges = poles ? hdi_local_edges(lap, 0) * (1 + reach * root / (4 * edge))
-                  : hdi_local_edges(lap, root / edge) * reach;   /* more reach takes more edges */
-    return hdi_local_grow(l, lap, edges * edge, (poles ? 1 : reach) * hdi_local_hops(lap), most, ctx, h->e);
-}
-
-/* Where only the means of whole components are left, answers are those at the first such time. */
-static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times) {
-    int32_t i;
-    if (l->rim.n > 0 || !hdi_heat_equal(&l->heat, in->m, in->t, in->e)) return;
-    for (i = 0; i < in->n_times; i++)
-        times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
+    radius = hdi_local_radius(h->heat, hdi_local_edge(lap, l->at[0].row), root, reach);
+    return hdi_local_grow(l, radius, hdi_local_hops(h->heat, reach), most, h->e);
 }
 
 /* Answers item q on the ball, and stores the answers if they leave out no more than `most`. */
@@ -19011,21 +19016,13 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
         in.lap = in.m->lap;
         rep->ordering = in.m->sym.ordering;
         rep->factor_nnz = in.m->sym.nnz;
-        hdi_local_clip(l, &in, times);
+        /* where only the means of whole components are left, answers are those at the first such time */
+        if (l->rim.n == 0 && hdi_heat_equal(&l->heat, in.m, in.t, in.e))
+            for (i = 0; i < h->n_times; i++)
+                times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
         (void)(HDI_HAS_POLE_FACTORS && !in.solver ? hdi_heat_by_direct(&in) : hdi_heat_by_krylov(&in));
     }
     return hdi_heat_end(&in);
-}
-
-/* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
- * then, as errors fall like exp(-R^2/4t). */
-#define HDI_LOCAL_SHARE 100
-enum { HDI_LOCAL_TRIES = 6 };
-
-/* A larger reach where what is left out is so much too large: as a Gaussian asks for, and where that has not
- * helped twice, for distances are not what they seem, half as far again. */
-static double hdi_local_more(double reach, int32_t tries, double excess) {
-    return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * log(hdi_min(excess, 1e16))) + 0.03;
 }
 
 /* What item q leaves of a source without rows. */
@@ -19048,8 +19045,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
     const int automatic = heat->opts.method == HD_METHOD_AUTO;
     const int32_t most = automatic ? heat->source->n_active / 2 : INT32_MAX;
     const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
-    const hd_rational *set = heat->opts.rational;
-    double reach = hdi_local_reach(set, wanted), tol = wanted;
+    double reach = hdi_local_reach(heat, 1);
     int32_t tries;
     for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
         const int last = !automatic && tries + 1 == HDI_LOCAL_TRIES;
@@ -19058,9 +19054,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
         if (hdi_local_plan(heat, l, h->e) < 0 ||
             hdi_local_solve(h, l, q, last ? HUGE_VAL : wanted, rep) < 0 || rep->error_local <= wanted)
             return h->e->status;
-        tol *= wanted / hdi_min(rep->error_local, 1e16 * wanted);
-        reach = set ? hdi_max(hdi_local_reach(set, tol), (tries > 1 ? 1.5 : 1.05) * reach)
-                    : hdi_local_more(reach, tries, rep->error_local / wanted);
+        reach = hdi_local_more(heat, reach, tries, rep->error_local / wanted);
     }
     if (automatic && h->e->status >= 0)
         hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
@@ -19068,26 +19062,22 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
     return h->e->status;
 }
 
-/* Item q and its report. */
-static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
-    hd_report rep;
-    memset(&rep, 0, sizeof rep);
-    if (hdi_local_answer(h, l, q, &rep) < 0 || l->n == 0) return;
-    if (h->ask.list)
-        rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
-    rep.method = HD_METHOD_LOCAL;
-    rep.solver = h->solver;
-    rep.reason = h->rep->reason;
-    rep.n_touched = l->n;
-    hdi_report_merge(h->rep, &rep);
-}
-
 static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     hdi_local *l = hdi_local_open(h->heat, h->e);
+    hd_report rep;
     int32_t q;
     for (q = 0; q < h->ask.k && h->e->status >= 0; q++) {
-        if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0)
-            hdi_local_item(h, l, q);
+        if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0 &&
+            hdi_local_answer(h, l, q, &rep) >= 0 && l->n > 0) {
+            if (h->ask.list)                     /* their errors are in its ledgers */
+                rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver =
+                    rep.error_rounding = 0;
+            rep.method = HD_METHOD_LOCAL;
+            rep.solver = h->solver;
+            rep.reason = h->rep->reason;
+            rep.n_touched = l->n;
+            hdi_report_merge(h->rep, &rep);
+        }
         if (h->e->status < 0) h->e->column = q;
     }
     if (h->e->status < 0) hdi_local_free(h->heat);
@@ -19126,7 +19116,7 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) 
     double n, steps, packs = set ? hdi_high32(1, hdi_set_packs(set)) : 0;
     if (!hdi_local_can(h) || (!asked && lap->n_active < HDI_LOCAL_FROM)) return;
     l = hdi_local_open(h->heat, h->e);
-    if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(set, HDI_LOCAL_SHARE * h->heat->opts.tol), most);
+    if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(h->heat, 1), most);
     if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     else if (l && h->e->status >= 0) c->possible = l->n <= most;
     if (!c->possible) return;
@@ -21032,7 +21022,7 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
 #define HDI_PATCH_STOP 1e-4      /* of hdi_mass_solve: a hundredth of the functions */
-/* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
+/* Of hdi_local_radius and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
@@ -21085,19 +21075,16 @@ static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32
 /* Finds a piece with its margin; stops beyond `most` rows. */
 static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
-    const hd_laplacian *lap = h->heat->source;
+    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
     double edge = 0;
-    const int own = h->heat->n_sets > 0;
-    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * (own ? 1 : x->reach) * hdi_local_hops(lap);
     int32_t i;
-    hdi_local_clear(x->local, lap);
+    hdi_local_clear(x->local);
     for (i = begin; i < end; i++) {
-        edge += hdi_min(hdi_local_edge(lap, x->row[i]), root) / (end - begin);
-        if (hdi_local_add(x->local, lap, x->row[i], h->heat->ctx, h->e) < 0) return h->e->status;
+        edge += hdi_min(hdi_local_edge(h->heat->source, x->row[i]), root) / (end - begin);
+        if (hdi_local_add(x->local, x->row[i], h->e) < 0) return h->e->status;
     }
-    edge = own ? hdi_local_edges(lap, 0) * (edge + x->reach * root / 4)
-               : hdi_local_edges(lap, root / edge) * x->reach * edge;
-    return hdi_local_grow(x->local, lap, HDI_PATCH_REACH * edge, hops, most, h->heat->ctx, h->e);
+    edge = HDI_PATCH_REACH * hdi_local_radius(h->heat, edge, root, x->reach);
+    return hdi_local_grow(x->local, edge, hops, most, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
@@ -21354,13 +21341,6 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     return hdi_scope_end(&s);
 }
 
-/* A wider margin where what is left out is so much too large. */
-static void hdi_patch_widen(hdi_patches *x, int32_t tries, double excess) {
-    const double digits = log(hdi_min(excess, 1e16)) / hdi_max(1, -log(x->wanted));
-    if (x->to->task.h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries, excess);
-    else x->reach = (tries > 1 ? 1.5 : 1.05 + digits) * hdi_max(x->reach, 1e-3);
-}
-
 /* A piece. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
@@ -21370,7 +21350,7 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
-        hdi_patch_widen(x, tries - 1, rep.error_local / x->wanted);
+        x->reach = hdi_local_more(h->heat, x->reach, tries - 1, rep.error_local / x->wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21391,9 +21371,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->n = to->rows ? to->n_rows : n;
     x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
-    x->reach = h->heat->n_sets > 0 ? 0 : 1;
-    for (q = 0; q < h->heat->n_sets; q++)
-        x->reach = hdi_max(x->reach, hdi_local_reach(h->heat->sets + q, x->wanted));
+    x->reach = hdi_local_reach(h->heat, h->heat->n_sets);
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
     x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
