@@ -18858,7 +18858,6 @@ static void hdi_local_free(hd_heat *heat) {
     hdi_local_drop(l);
     hdi_laplacian_free(l->ball, heat->ctx);
     hdi_free(heat->ctx, l->at);
-    hdi_free(heat->ctx, l->place);
     hdi_free(heat->ctx, l);
     heat->part = NULL;
 }
@@ -18868,13 +18867,13 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     hdi_local *l = heat->part;
     if (!l) {
-        l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
+        const uint64_t places = (uint64_t)lap->n_active * sizeof *l->place;
+        l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, sizeof *l + places, 1, e);
         if (!l) return NULL;
         l->heat.ctx = heat->ctx;
         l->source = lap;
         l->version = -1;
-        l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
-        if (!l->place) return hdi_local_free(heat), (hdi_local *)NULL;
+        l->place = (int32_t *)(void *)(l + 1);
     }
     if (l->version != lap->version) hdi_local_range(lap, &l->smallest, &l->largest);
     l->version = lap->version;
@@ -19491,15 +19490,10 @@ struct hdi_task {
 /* Values of done: the time is settled; poles have answered it, and eigenpairs may do better. */
 enum { HDI_DONE_FOR_GOOD = 1, HDI_DONE_BY_POLES };
 
-/* Are at most `most` eigenpairs expected to be enough at time t? */
+/* Are at most `most` eigenpairs expected to be enough at time t? Queries that eigenpairs serve have times. */
 static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most) {
     return HDI_HAS_MODES && task->serves && t > 0 && hdi_modes_allowed(task->h->heat) &&
            hdi_modes_expected(task->h->heat, task->depth / t) <= most;
-}
-
-/* Are eigenpairs tried before poles at time t? */
-static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
-    return hdi_task_near(task, t, task->serves);
 }
 
 /* May poles of the highest degree take over where the default's bound is too large, and may times share their
@@ -19541,12 +19535,12 @@ static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs, if tried, or -1. */
+/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs, if tried, or 0. */
 static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
-    const int32_t most = bound < 0 ? HDI_MODES_MOST : task->serves;
-    if (by_poles <= HDI_MODES_HELP || (bound >= 0 && by_poles <= bound) || !task->serves ||
+    const int32_t most = bound > 0 ? task->serves : HDI_MODES_MOST;
+    if (by_poles <= hdi_max(bound, HDI_MODES_HELP) || !task->serves ||
         !hdi_task_near(task, h->ask.t[q], most)) return h->e->status;
     hdi_heat_drop(h->heat);
     if (hdi_task_by(task, q, most) && h->e->status >= 0 && h->rep->error_bound > by_poles)
@@ -19558,9 +19552,10 @@ static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound)
  * way is tried too, and the answer with the lower bound is taken. */
 static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
-    double bound = -1;
+    double bound = 0;
     hdi_task_at(h, q);
-    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_by(task, q, 2 * task->serves)) {
+    if (task->serves && hdi_task_near(task, h->ask.t[q], task->serves) &&
+        hdi_task_by(task, q, 2 * task->serves)) {
         bound = h->rep->error_bound;
         if (h->e->status < 0 || bound <= HDI_MODES_HELP ||
             h->ask.t[q] * h->heat->modes.low > HDI_MODES_FADED) return h->e->status;
@@ -19582,14 +19577,14 @@ static hd_status hdi_task_run(hdi_task *task) {
     done = HDI_TAKE_ZERO(&h->s, char, n);
     for (round = 0; round < 2 && h->e->status >= 0; round++) {
         if (round == 1 && task->together) {
-            hdi_task_at(h, 0);
+            for (q = n; q > 0; q--) hdi_task_at(h, q - 1);
             if (task->together(task, done, one) < 0) break;
         }
         for (q = 0; q < n && h->e->status >= 0; q++) {
             if (done[q] == HDI_DONE_FOR_GOOD ||
-                (round == 0 && !(task->serves && hdi_task_first(task, h->ask.t[q])))) continue;
+                (round == 0 && !(task->serves && hdi_task_near(task, h->ask.t[q], task->serves)))) continue;
             *h->rep = one[q];
-            if (done[q]) (void)hdi_task_help(task, q, -1);
+            if (done[q]) (void)hdi_task_help(task, q, 0);
             else (void)hdi_task_time(task, q);
             one[q] = *h->rep;
             done[q] = HDI_DONE_FOR_GOOD;
@@ -19777,6 +19772,7 @@ static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
                                   (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * unit), size));
 }
 
+/* Answers that need no solve: those for t = 0, or the means for very large t. */
 static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
     hdi_lane *lane = h->heat->lane;
     (void)n, (void)arg;
@@ -19788,22 +19784,13 @@ static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
     if (!h->equal && h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
 }
 
-/* Answers that need no solve: those for t = 0, or the means for very large t. */
-static hd_status hdi_heat_plain(hdi_heat_call *h) {
-    return hdi_heat_lanes(h, 1, 0, 0) < 0 ? h->e->status : hdi_heat_items(h, hdi_plain_solve, NULL);
-}
-
-/* One time by the method picked for it. */
-static hd_status hdi_heat_answer(hdi_heat_call *h) {
-    if (hdi_heat_engine(h) < 0) return h->e->status;
-    if (h->t == 0 || h->equal) return hdi_heat_plain(h);
-    return hdi_engines[h->method].run(h);
-}
-
-/* Answers the time under way by the method picked. */
+/* Answers the time under way by the method picked for it. */
 static hd_status hdi_heat_chosen(hdi_task *task) {
     hdi_heat_call *h = task->h;
-    if (hdi_heat_answer(h) >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    if (hdi_heat_engine(h) < 0) return h->e->status;
+    if (h->t > 0 && !h->equal) (void)hdi_engines[h->method].run(h);
+    else if (hdi_heat_lanes(h, 1, 0, 0) >= 0) (void)hdi_heat_items(h, hdi_plain_solve, NULL);
+    if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }
 
@@ -19816,7 +19803,6 @@ static int hdi_heat_retreat(const hdi_task *task) {
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
     const int columns = HDI_HAS_DIRECT && task->poles == hdi_heat_chosen;
-    int32_t q;
     if (heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->ask.F && h->ask.F == h->ask.U && h->batch > 0) return 0;
@@ -19840,7 +19826,7 @@ static int hdi_heat_retreat(const hdi_task *task) {
     } else {
         return 0;
     }
-    for (q = hdi_high32(h->ask.n_times, 1); q > 0; q--) hdi_task_at(h, q - 1);
+    hdi_task_at(h, 0);
     return 1;
 }
 
@@ -19988,8 +19974,6 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
     for (q = 0; q < n; q++)                      /* at most as many distinct columns as vertices */
         if (q == 0 || list->order[q].key != list->order[q - 1].key) list->begin[h->ask.k++] = q;
     list->begin[h->ask.k] = n;
-    for (q = 0; q < h->ask.n_times; q++)
-        list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
     h->ask.list = list;
     return HD_OK;
 }
@@ -20044,11 +20028,14 @@ static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t 
     hdi_scope s = hdi_scope_begin(ctx, e);
     hdi_pair *order;
     hd_csr a;
-    int64_t r, p, at = 0, longest = 0;
+    int64_t r, p, at = 0, nnz = 0, longest = 0;
     if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
-    for (r = 0; r < rows; r++) longest = hdi_most(longest, from->end[r] - from->begin[r]);
+    for (r = 0; r < rows; r++) {                 /* rows that were answered again have left some behind */
+        longest = hdi_most(longest, from->end[r] - from->begin[r]);
+        nnz += from->end[r] - from->begin[r];
+    }
     order = HDI_TAKE(&s, hdi_pair, longest);
-    a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
+    a = hdi_csr_take(&s, (int32_t)rows, n, nnz, 1);
     for (r = 0; r < rows && e->status >= 0; r++) {
         const int64_t count = from->end[r] - from->begin[r];
         for (p = 0; p < count; p++) {
@@ -20155,7 +20142,7 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     heat->fam.max_iterations = o->max_iterations;
 }
 
-static void hdi_heat_free(hd_heat *heat) {
+HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
     ctx = heat->ctx;
@@ -22790,7 +22777,7 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
     const int32_t n_times = h->n_times, inverses = x->query->by == HDI_BY_INVERSION;
     hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
     int32_t some = 0, few = n_times;
-    while (few > 0 && hdi_task_first(&x->task, h->times[few - 1] / x->unit)) few--;
+    while (few > 0 && hdi_task_near(&x->task, h->times[few - 1] / x->unit, x->task.serves)) few--;
     while (some < few && !hdi_task_near(&x->task, h->times[some] / x->unit, HDI_MODES_MOST)) some++;
     if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
     if (inverses) hdi_estimate_inverses(x, few, c);
@@ -24385,8 +24372,6 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
     if (c.e->status < 0 || hdi_sets_check(sets, count, c.e) < 0) return c.e->status;
     return hdi_heat_take_sets(heat, count, sets, c.e);
 }
-
-HEATDIFF_API void hd_heat_free(hd_heat *heat) { hdi_heat_free(heat); }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
                                         hd_c64 *x, const hd_solve_opts *opts, hd_solve_report *report,
