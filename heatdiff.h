@@ -18467,22 +18467,23 @@ static hd_status hdi_heat_make(hd_heat *heat, const hd_laplacian *lap, hd_error 
  * that makes is bounded by hdi_rim_bound; where it is too much, the ball grows. */
 
 /* Forgets the ball, but not the pair that was made of it. */
-static void hdi_local_clear(hdi_local *l, const hd_laplacian *lap) {
+static void hdi_local_clear(hdi_local *l) {
+    const hd_csr *L = &l->source->L;
     int64_t p;
     for (; l->n > 0; l->n--) {
         const int32_t i = l->at[l->n - 1].row;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) l->place[lap->L.col[p]] = 0;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) l->place[L->col[p]] = 0;
     }
 }
 
 /* Adds a row that is as far as `at` says. */
-static hd_status hdi_local_put(hdi_local *l, hdi_reached at, hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_put(hdi_local *l, hdi_reached at, hd_error *e) {
     if (l->n == l->room) {
         const int64_t room = 2 * l->room + 64;
-        hdi_reached *more = HDI_NEW(ctx, hdi_reached, room, e);
+        hdi_reached *more = HDI_NEW(l->heat.ctx, hdi_reached, room, e);
         if (!more) return e->status;
         if (l->n > 0) memcpy(more, l->at, (size_t)l->n * sizeof *more);
-        hdi_free(ctx, l->at);
+        hdi_free(l->heat.ctx, l->at);
         l->at = more;
         l->room = room;
     }
@@ -18505,8 +18506,8 @@ static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
 
 /* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
  * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
-static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t row, hd_context *ctx,
-                               hd_error *e) {
+static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
+    const hd_laplacian *lap = l->source;
     hdi_reached at = {0, 0, row, row};
     double sum = 0;
     int64_t p;
@@ -18515,15 +18516,15 @@ static hd_status hdi_local_add(hdi_local *l, const hd_laplacian *lap, int32_t ro
         sum += fabs(lap->L.val[p]) * (edge * edge);
     }
     at.unit = sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
-    return hdi_local_put(l, at, ctx, e);
+    return hdi_local_put(l, at, e);
 }
 
 /* Adds the rows that edges lead to from those that are there: all that are less than `hops` edges away, and
  * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
  * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
  * nearer than at first are followed again. */
-static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double reach, double hops,
-                                int32_t most, hd_context *ctx, hd_error *e) {
+static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t most, hd_error *e) {
+    const hd_laplacian *lap = l->source;
     int32_t i, first = 0, next, level = 0, level_end = l->n;
     int64_t p;
     for (; first < l->n && l->n <= most; first = next) {
@@ -18540,7 +18541,7 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
                 at.row = lap->L.col[p];
                 at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
                 if (there < 0 && (at.way <= reach || level < hops)) {
-                    if (hdi_local_put(l, at, ctx, e) < 0) return e->status;
+                    if (hdi_local_put(l, at, e) < 0) return e->status;
                 } else if (there >= 0 && l->at[there].way > at.way) {
                     l->at[there] = at;
                     next = there < i ? hdi_low32(next, there) : next;
@@ -18551,27 +18552,30 @@ static hd_status hdi_local_grow(hdi_local *l, const hd_laplacian *lap, double re
     return e->status;
 }
 
-/* Counts the entries inside the ball, and the edges to the rows around it, which it numbers. */
-static int64_t hdi_local_count(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim) {
-    int64_t nnz = 0, p;
+/* Where the rows of the ball begin in its pair, in begin [n + 1]. Rows around the ball are numbered, and
+ * counted with the edges to them. */
+static void hdi_local_count(hdi_local *l, hdi_rim *rim, int64_t *begin) {
+    const hd_csr *L = &l->source->L;
+    int64_t p;
     int32_t i;
     memset(rim, 0, sizeof *rim);
-    for (i = 0; i < l->n; i++) {
+    for (i = 0, begin[0] = 0; i < l->n; i++) {
         const int32_t row = l->at[i].row;
-        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) {
-            int32_t *place = l->place + lap->L.col[p];
-            nnz += *place > 0;
+        begin[i + 1] = begin[i];
+        for (p = L->row_ptr[row]; p < L->row_ptr[row + 1]; p++) {
+            int32_t *place = l->place + L->col[p];
+            begin[i + 1] += *place > 0;
             rim->n_edges += *place <= 0;
             if (*place == 0) *place = -(++rim->n);
         }
     }
-    return nnz;
 }
 
 /* Fills the rows of the ball, and the edges that leave it. Entries are put as in hdi_pair_refresh. d, id:
  * room of the rim. */
-static void hdi_local_fill(const hdi_local *l, const hd_laplacian *lap, hd_laplacian *out, hdi_rim *rim,
-                           double *d, int32_t *id, int64_t *fill) {
+static void hdi_local_fill(const hdi_local *l, hd_laplacian *out, hdi_rim *rim, double *d, int32_t *id,
+                           int64_t *fill) {
+    const hd_laplacian *lap = l->source;
     double *edge_l = d + rim->n, *edge_b = edge_l + rim->n_edges;
     int64_t p, e = 0;
     int32_t i, c, conserves = lap->conserves;
@@ -18618,24 +18622,19 @@ static void hdi_local_range(const hd_laplacian *lap, double *least, double *most
     }
 }
 
-/* How many entries of a row lie in the ball. */
-static int64_t hdi_local_inside(const hdi_local *l, const hd_laplacian *lap, int32_t row) {
-    int64_t count = 0, p;
-    for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1]; p++) count += l->place[lap->L.col[p]] > 0;
-    return count;
-}
-
 /* The pair of the ball with its rim. If nothing is around it, it is made of whole components, which may
  * conserve heat. *rows: what its vertices are in the source. */
-static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_rim *rim, int32_t **rows,
-                                    hd_context *ctx, hd_error *e) {
-    const int64_t n = l->n, nnz = hdi_local_count(l, lap, rim), m = rim->n_edges;
+static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, hd_error *e) {
+    const hd_laplacian *lap = l->source;
+    const int64_t n = l->n;
+    hd_context *ctx = l->heat.ctx;
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
-    int64_t *fill = HDI_TAKE(&s, int64_t, n);
+    int64_t *fill = HDI_TAKE(&s, int64_t, n + 1);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
     double least, most, *d;
     int32_t i;
     if (!out) return (void)hdi_scope_end(&s), out;
+    hdi_local_count(l, rim, fill);
     keep = hdi_lap_keep(out, e);
     *out = *lap;
     out->context = ctx;
@@ -18644,11 +18643,11 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
     out->n = out->n_active = (int32_t)n;
     out->n_components = rim->n > 0 ? 1 : lap->n_components;
     out->conserves = rim->n > 0 ? 0 : lap->conserves;
-    out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, nnz, 1);
-    out->B = lap->B ? HDI_TAKE(keep, double, nnz) : NULL;
+    out->L = hdi_csr_take(keep, (int32_t)n, (int32_t)n, fill[n], 1);
+    out->B = lap->B ? HDI_TAKE(keep, double, fill[n]) : NULL;
     out->component_mass = HDI_TAKE(keep, double, out->n_components);
-    out->mass = HDI_TAKE(keep, double, 5 * n + 3 * (int64_t)rim->n + 2 * m);
-    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * m);
+    out->mass = HDI_TAKE(keep, double, 5 * n + 3 * (int64_t)rim->n + 2 * (int64_t)rim->n_edges);
+    out->vertex = out->row = HDI_TAKE(keep, int32_t, 3 * n + 2 * (int64_t)rim->n_edges);
     if (e->status >= 0) {
         d = out->mass + (lap->B ? 2 : 1) * n;
         out->b_diag = d - n;
@@ -18657,13 +18656,10 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, const hd_laplacian *lap, hdi_r
         *rows = out->component + n;
         for (i = 0; i < out->n_components; i++)
             out->component_mass[i] = rim->n > 0 ? HUGE_VAL : lap->component_mass[i];
-        for (i = 0; i < n; i++) {
-            const int32_t from = (*rows)[i] = l->at[i].row;
-            out->vertex[i] = i;
-            fill[i] = out->L.row_ptr[i];
-            out->L.row_ptr[i + 1] = fill[i] + hdi_local_inside(l, lap, from);
-        }
-        hdi_local_fill(l, lap, out, rim, d + 3 * n, *rows + n, fill);
+        for (i = 0; i < n; i++) (*rows)[i] = l->at[i].row;
+        hdi_fill_own(out->vertex, (int32_t)n);
+        memcpy(out->L.row_ptr, fill, (size_t)(n + 1) * sizeof *fill);
+        hdi_local_fill(l, out, rim, d + 3 * n, *rows + n, fill);
         hdi_local_range(out, &least, &most);
         rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
         out->lambda_max = hdi_lambda_known(out);
@@ -18687,7 +18683,6 @@ static void hdi_local_free(hd_heat *heat) {
     hdi_local_drop(l);
     hdi_laplacian_free(l->ball, heat->ctx);
     hdi_free(heat->ctx, l->at);
-    hdi_free(heat->ctx, l->place);
     hdi_free(heat->ctx, l);
     heat->part = NULL;
 }
@@ -18697,13 +18692,13 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     hdi_local *l = heat->part;
     if (!l) {
-        l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, 1, sizeof *l, e);
+        const uint64_t places = (uint64_t)lap->n_active * sizeof *l->place;
+        l = heat->part = (hdi_local *)hdi_alloc_zero(heat->ctx, sizeof *l + places, 1, e);
         if (!l) return NULL;
         l->heat.ctx = heat->ctx;
         l->source = lap;
         l->version = -1;
-        l->place = (int32_t *)hdi_alloc_zero(heat->ctx, (uint64_t)lap->n_active, sizeof *l->place, e);
-        if (!l->place) return hdi_local_free(heat), (hdi_local *)NULL;
+        l->place = (int32_t *)(void *)(l + 1);
     }
     if (l->version != lap->version) hdi_local_range(lap, &l->smallest, &l->largest);
     l->version = lap->version;
@@ -18716,7 +18711,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     hd_heat *own = &l->heat;
     hdi_rim rim;
     int32_t *row = NULL;
-    hd_laplacian *ball = hdi_local_pair(l, heat->source, &rim, &row, heat->ctx, e);
+    hd_laplacian *ball = hdi_local_pair(l, &rim, &row, e);
     if (!ball) return e->status;
     if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
         own->source = own->elim.source = own->few.source = ball;
@@ -18738,71 +18733,80 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     return e->status;
 }
 
-/* The radius of a ball in edges, where sqrt(t) is so many: it leaves 1e-8 to 1e-7 of the peak. Without places
- * ways go over edges, and are longer than straight ones by the first number. */
+/* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
+ * then, as errors fall like exp(-R^2/4t). */
+#define HDI_LOCAL_SHARE 100
+enum { HDI_LOCAL_TRIES = 6 };
+
+/* The first reach of balls. Without sets it is 1: the ball leaves out 1e-8 to 1e-7 of the peak. With sets, of
+ * which the first `count` are asked for, it is the radius in sqrt(t) beyond which the solutions of the poles,
+ * which fall like exp(-Re sqrt(theta) d/sqrt(t)), are below what may be left out. */
+static double hdi_local_reach(const hd_heat *heat, int32_t count) {
+    const double tol = HDI_LOCAL_SHARE * heat->opts.tol;
+    double reach = heat->n_sets > 0 ? 0 : 1;
+    int32_t q, p;
+    for (q = 0; q < hdi_low32(count, heat->n_sets); q++) {
+        const hd_rational *set = heat->sets + q;
+        for (p = 0; p < set->n_poles; p++) {
+            const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
+            const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
+            reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
+        }
+    }
+    return reach;
+}
+
+/* A larger reach where what is left out is so much too large: as a Gaussian asks for, or poles, and where
+ * that has not helped twice, for distances are not what they seem, half as far again. */
+static double hdi_local_more(const hd_heat *heat, double reach, int32_t tries, double excess) {
+    const double digits = log(hdi_min(excess, 1e16)), all = -log(HDI_LOCAL_SHARE * heat->opts.tol);
+    if (heat->n_sets > 0) return (tries > 1 ? 1.5 : 1.05 + digits / hdi_max(1, all)) * hdi_max(reach, 1e-3);
+    return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * digits) + 0.03;
+}
+
+/* The radius of a ball of this reach where edges are so long and the root of t is `root`. Without places ways
+ * go over edges, and are longer than straight ones by the first number. */
 #define HDI_LOCAL_TURNS 1.36
 
-static double hdi_local_edges(const hd_laplacian *lap, double edges) {
-    return (lap->xyz ? 1 : HDI_LOCAL_TURNS) * (4 + edges * (8.6 + 0.55 * log(hdi_max(edges, 1))));
+static double hdi_local_radius(const hd_heat *heat, double edge, double root, double reach) {
+    const double turns = heat->source->xyz ? 1 : HDI_LOCAL_TURNS;
+    if (heat->n_sets > 0) return turns * (4 * edge + reach * root);
+    return turns * reach * (4 * edge + root * (8.6 + 0.55 * log(hdi_max(root / edge, 1))));
 }
 
 /* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
  * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
 #define HDI_LOCAL_DIGITS 23
 
-static double hdi_local_hops(const hd_laplacian *lap) {
-    const double root = sqrt(hdi_max(lap->b_ratio, 1e-30) / 2);
-    return lap->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
+static double hdi_local_hops(const hd_heat *heat, double reach) {
+    const double root = sqrt(hdi_max(heat->source->b_ratio, 1e-30) / 2);
+    const double hops = heat->source->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
+    return (heat->n_sets > 0 ? 1 : reach) * hops;
 }
 
-/* The radius in sqrt(t) beyond which the solutions of a set's poles, which fall like exp(-Re sqrt(theta)
- * d/sqrt(t)), are below tol times the largest value of their sum. Without a set 1: see hdi_local_find. */
-static double hdi_local_reach(const hd_rational *set, double tol) {
-    double reach = set ? 0 : 1;
-    int32_t p;
-    for (p = 0; set && p < set->n_poles; p++) {
-        const double root = sqrt((hdi_cabs(set->theta[p]) + set->theta[p].re) / 2);
-        const double size = hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]);
-        reach = hdi_max(reach, log(hdi_max(1, size / (tol * hdi_set_largest(set)))) / root);
-    }
-    return reach;
-}
-
-/* Finds the ball of item q, or that of a row in the middle if items are not known. reach: without a set as a
- * multiple of what is usual. */
+/* Finds the ball of item q, or that of a row in the middle if items are not known; stops beyond `most`
+ * rows. */
 static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, double reach, int32_t most) {
     const hd_laplacian *lap = h->heat->source;
     const double root = sqrt(h->times[h->n_times - 1] / h->heat->scale);
-    const int poles = h->heat->poles_asked;
-    hd_context *ctx = h->heat->ctx;
     hdi_terms c = hdi_terms_vertex(lap->vertex[lap->n_active / 2]);
-    double edge, edges;
+    double radius;
     int32_t i;
-    hdi_local_clear(l, lap);
+    hdi_local_clear(l);
     if (h->ask.F) {
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         for (i = 0; i < lap->n_active && l->n <= most; i++)
-            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, lap, i, ctx, h->e) < 0) break;
+            if (f[lap->vertex[i]] != 0 && hdi_local_add(l, i, h->e) < 0) break;
     } else {
         if (h->ask.terms || h->ask.list) c = hdi_heat_source(h, q);
         for (i = 0; i < c.n && h->e->status >= 0; i++) {
             const int32_t row = lap->row[hdi_terms_at(&c, i)];
-            if (row >= 0) (void)hdi_local_add(l, lap, row, ctx, h->e);
+            if (row >= 0) (void)hdi_local_add(l, row, h->e);
         }
     }
     if (h->e->status < 0 || l->n == 0) return h->e->status;
-    edge = hdi_local_edge(lap, l->at[0].row);
-    edges = poles ? hdi_local_edges(lap, 0) * (1 + reach * root / (4 * edge))
-                  : hdi_local_edges(lap, root / edge) * reach;   /* more reach takes more edges */
-    return hdi_local_grow(l, lap, edges * edge, (poles ? 1 : reach) * hdi_local_hops(lap), most, ctx, h->e);
-}
-
-/* Where only the means of whole components are left, answers are those at the first such time. */
-static void hdi_local_clip(hdi_local *l, const hdi_heat_call *in, double *times) {
-    int32_t i;
-    if (l->rim.n > 0 || !hdi_heat_equal(&l->heat, in->m, in->t, in->e)) return;
-    for (i = 0; i < in->n_times; i++)
-        times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
+    radius = hdi_local_radius(h->heat, hdi_local_edge(lap, l->at[0].row), root, reach);
+    return hdi_local_grow(l, radius, hdi_local_hops(h->heat, reach), most, h->e);
 }
 
 /* Answers item q on the ball, and stores the answers if they leave out no more than `most`. */
@@ -18835,21 +18839,13 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
         in.lap = in.m->lap;
         rep->ordering = in.m->sym.ordering;
         rep->factor_nnz = in.m->sym.nnz;
-        hdi_local_clip(l, &in, times);
+        /* where only the means of whole components are left, answers are those at the first such time */
+        if (l->rim.n == 0 && hdi_heat_equal(&l->heat, in.m, in.t, in.e))
+            for (i = 0; i < h->n_times; i++)
+                times[i] = hdi_min(times[i], 2 * HDI_EQUAL_BEYOND * l->heat.ground.largest_trace);
         (void)(HDI_HAS_POLE_FACTORS && !in.solver ? hdi_heat_by_direct(&in) : hdi_heat_by_krylov(&in));
     }
     return hdi_heat_end(&in);
-}
-
-/* What may be left out of an answer, relative to its largest value, in units of tol. The ball grows until
- * then, as errors fall like exp(-R^2/4t). */
-#define HDI_LOCAL_SHARE 100
-enum { HDI_LOCAL_TRIES = 6 };
-
-/* A larger reach where what is left out is so much too large: as a Gaussian asks for, and where that has not
- * helped twice, for distances are not what they seem, half as far again. */
-static double hdi_local_more(double reach, int32_t tries, double excess) {
-    return (tries > 1 ? 1.5 : 1) * sqrt(reach * reach + 0.08 * log(hdi_min(excess, 1e16))) + 0.03;
 }
 
 /* What item q leaves of a source without rows. */
@@ -18872,8 +18868,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
     const int automatic = heat->opts.method == HD_METHOD_AUTO;
     const int32_t most = automatic ? heat->source->n_active / 2 : INT32_MAX;
     const double wanted = HDI_LOCAL_SHARE * heat->opts.tol;
-    const hd_rational *set = heat->opts.rational;
-    double reach = hdi_local_reach(set, wanted), tol = wanted;
+    double reach = hdi_local_reach(heat, 1);
     int32_t tries;
     for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
         const int last = !automatic && tries + 1 == HDI_LOCAL_TRIES;
@@ -18882,9 +18877,7 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
         if (hdi_local_plan(heat, l, h->e) < 0 ||
             hdi_local_solve(h, l, q, last ? HUGE_VAL : wanted, rep) < 0 || rep->error_local <= wanted)
             return h->e->status;
-        tol *= wanted / hdi_min(rep->error_local, 1e16 * wanted);
-        reach = set ? hdi_max(hdi_local_reach(set, tol), (tries > 1 ? 1.5 : 1.05) * reach)
-                    : hdi_local_more(reach, tries, rep->error_local / wanted);
+        reach = hdi_local_more(heat, reach, tries, rep->error_local / wanted);
     }
     if (automatic && h->e->status >= 0)
         hdi_fail(h->e, HD_ERR_NOT_CONVERGED, "local: heat reaches too much of the mesh");
@@ -18892,26 +18885,22 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
     return h->e->status;
 }
 
-/* Item q and its report. */
-static void hdi_local_item(hdi_heat_call *h, hdi_local *l, int32_t q) {
-    hd_report rep;
-    memset(&rep, 0, sizeof rep);
-    if (hdi_local_answer(h, l, q, &rep) < 0 || l->n == 0) return;
-    if (h->ask.list)
-        rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver = rep.error_rounding = 0;
-    rep.method = HD_METHOD_LOCAL;
-    rep.solver = h->solver;
-    rep.reason = h->rep->reason;
-    rep.n_touched = l->n;
-    hdi_report_merge(h->rep, &rep);
-}
-
 static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     hdi_local *l = hdi_local_open(h->heat, h->e);
+    hd_report rep;
     int32_t q;
     for (q = 0; q < h->ask.k && h->e->status >= 0; q++) {
-        if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0)
-            hdi_local_item(h, l, q);
+        if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0 &&
+            hdi_local_answer(h, l, q, &rep) >= 0 && l->n > 0) {
+            if (h->ask.list)                     /* their errors are in its ledgers */
+                rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver =
+                    rep.error_rounding = 0;
+            rep.method = HD_METHOD_LOCAL;
+            rep.solver = h->solver;
+            rep.reason = h->rep->reason;
+            rep.n_touched = l->n;
+            hdi_report_merge(h->rep, &rep);
+        }
         if (h->e->status < 0) h->e->column = q;
     }
     if (h->e->status < 0) hdi_local_free(h->heat);
@@ -18950,7 +18939,7 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) 
     double n, steps, packs = set ? hdi_high32(1, hdi_set_packs(set)) : 0;
     if (!hdi_local_can(h) || (!asked && lap->n_active < HDI_LOCAL_FROM)) return;
     l = hdi_local_open(h->heat, h->e);
-    if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(set, HDI_LOCAL_SHARE * h->heat->opts.tol), most);
+    if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(h->heat, 1), most);
     if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     else if (l && h->e->status >= 0) c->possible = l->n <= most;
     if (!c->possible) return;
@@ -19326,15 +19315,10 @@ struct hdi_task {
 /* Values of done: the time is settled; poles have answered it, and eigenpairs may do better. */
 enum { HDI_DONE_FOR_GOOD = 1, HDI_DONE_BY_POLES };
 
-/* Are at most `most` eigenpairs expected to be enough at time t? */
+/* Are at most `most` eigenpairs expected to be enough at time t? Queries that eigenpairs serve have times. */
 static HDI_INLINE int hdi_task_near(const hdi_task *task, double t, int32_t most) {
     return HDI_HAS_MODES && task->serves && t > 0 && hdi_modes_allowed(task->h->heat) &&
            hdi_modes_expected(task->h->heat, task->depth / t) <= most;
-}
-
-/* Are eigenpairs tried before poles at time t? */
-static HDI_INLINE int hdi_task_first(const hdi_task *task, double t) {
-    return hdi_task_near(task, t, task->serves);
 }
 
 /* May poles of the highest degree take over where the default's bound is too large, and may times share their
@@ -19376,12 +19360,12 @@ static HDI_COLD int hdi_task_by(hdi_task *task, int32_t q, int32_t most) {
     return 1;
 }
 
-/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs, if tried, or -1. */
+/* Answers time q, after poles, from eigenpairs if their bound is lower. bound: theirs, if tried, or 0. */
 static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound) {
     hdi_heat_call *h = task->h;
     const double by_poles = h->rep->error_bound;
-    const int32_t most = bound < 0 ? HDI_MODES_MOST : task->serves;
-    if (by_poles <= HDI_MODES_HELP || (bound >= 0 && by_poles <= bound) || !task->serves ||
+    const int32_t most = bound > 0 ? task->serves : HDI_MODES_MOST;
+    if (by_poles <= hdi_max(bound, HDI_MODES_HELP) || !task->serves ||
         !hdi_task_near(task, h->ask.t[q], most)) return h->e->status;
     hdi_heat_drop(h->heat);
     if (hdi_task_by(task, q, most) && h->e->status >= 0 && h->rep->error_bound > by_poles)
@@ -19393,9 +19377,10 @@ static HDI_COLD hd_status hdi_task_help(hdi_task *task, int32_t q, double bound)
  * way is tried too, and the answer with the lower bound is taken. */
 static hd_status hdi_task_time(hdi_task *task, int32_t q) {
     hdi_heat_call *h = task->h;
-    double bound = -1;
+    double bound = 0;
     hdi_task_at(h, q);
-    if (task->serves && hdi_task_first(task, h->ask.t[q]) && hdi_task_by(task, q, 2 * task->serves)) {
+    if (task->serves && hdi_task_near(task, h->ask.t[q], task->serves) &&
+        hdi_task_by(task, q, 2 * task->serves)) {
         bound = h->rep->error_bound;
         if (h->e->status < 0 || bound <= HDI_MODES_HELP ||
             h->ask.t[q] * h->heat->modes.low > HDI_MODES_FADED) return h->e->status;
@@ -19417,14 +19402,14 @@ static hd_status hdi_task_run(hdi_task *task) {
     done = HDI_TAKE_ZERO(&h->s, char, n);
     for (round = 0; round < 2 && h->e->status >= 0; round++) {
         if (round == 1 && task->together) {
-            hdi_task_at(h, 0);
+            for (q = n; q > 0; q--) hdi_task_at(h, q - 1);
             if (task->together(task, done, one) < 0) break;
         }
         for (q = 0; q < n && h->e->status >= 0; q++) {
             if (done[q] == HDI_DONE_FOR_GOOD ||
-                (round == 0 && !(task->serves && hdi_task_first(task, h->ask.t[q])))) continue;
+                (round == 0 && !(task->serves && hdi_task_near(task, h->ask.t[q], task->serves)))) continue;
             *h->rep = one[q];
-            if (done[q]) (void)hdi_task_help(task, q, -1);
+            if (done[q]) (void)hdi_task_help(task, q, 0);
             else (void)hdi_task_time(task, q);
             one[q] = *h->rep;
             done[q] = HDI_DONE_FOR_GOOD;
@@ -19612,6 +19597,7 @@ static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
                                   (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * unit), size));
 }
 
+/* Answers that need no solve: those for t = 0, or the means for very large t. */
 static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
     hdi_lane *lane = h->heat->lane;
     (void)n, (void)arg;
@@ -19623,22 +19609,13 @@ static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
     if (!h->equal && h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
 }
 
-/* Answers that need no solve: those for t = 0, or the means for very large t. */
-static hd_status hdi_heat_plain(hdi_heat_call *h) {
-    return hdi_heat_lanes(h, 1, 0, 0) < 0 ? h->e->status : hdi_heat_items(h, hdi_plain_solve, NULL);
-}
-
-/* One time by the method picked for it. */
-static hd_status hdi_heat_answer(hdi_heat_call *h) {
-    if (hdi_heat_engine(h) < 0) return h->e->status;
-    if (h->t == 0 || h->equal) return hdi_heat_plain(h);
-    return hdi_engines[h->method].run(h);
-}
-
-/* Answers the time under way by the method picked. */
+/* Answers the time under way by the method picked for it. */
 static hd_status hdi_heat_chosen(hdi_task *task) {
     hdi_heat_call *h = task->h;
-    if (hdi_heat_answer(h) >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
+    if (hdi_heat_engine(h) < 0) return h->e->status;
+    if (h->t > 0 && !h->equal) (void)hdi_engines[h->method].run(h);
+    else if (hdi_heat_lanes(h, 1, 0, 0) >= 0) (void)hdi_heat_items(h, hdi_plain_solve, NULL);
+    if (h->e->status >= 0 && h->ask.list) hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     return h->e->status;
 }
 
@@ -19651,7 +19628,6 @@ static int hdi_heat_retreat(const hdi_task *task) {
     const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
     const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
     const int columns = HDI_HAS_DIRECT && task->poles == hdi_heat_chosen;
-    int32_t q;
     if (heat->spare == HDI_SPARE_POLES) return 0;
     /* fields may have been overwritten by their answers */
     if (h->ask.F && h->ask.F == h->ask.U && h->batch > 0) return 0;
@@ -19675,7 +19651,7 @@ static int hdi_heat_retreat(const hdi_task *task) {
     } else {
         return 0;
     }
-    for (q = hdi_high32(h->ask.n_times, 1); q > 0; q--) hdi_task_at(h, q - 1);
+    hdi_task_at(h, 0);
     return 1;
 }
 
@@ -19823,8 +19799,6 @@ static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int
     for (q = 0; q < n; q++)                      /* at most as many distinct columns as vertices */
         if (q == 0 || list->order[q].key != list->order[q - 1].key) list->begin[h->ask.k++] = q;
     list->begin[h->ask.k] = n;
-    for (q = 0; q < h->ask.n_times; q++)
-        list->ledger[q] = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 0);
     h->ask.list = list;
     return HD_OK;
 }
@@ -19888,9 +19862,11 @@ static hd_status hdi_sparse_close(const hdi_sparse *from, int64_t rows, int32_t 
                                   hd_context *ctx, hd_error *e) {
     hdi_scope s = hdi_scope_begin(ctx, e);
     hd_csr a;
-    int64_t r, p, at = 0;
+    int64_t r, p, at = 0, nnz = 0;
     if (rows > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "heat: too many rows for a matrix");
-    a = hdi_csr_take(&s, (int32_t)rows, n, from->n, 1);
+    /* rows that were answered again have left some behind */
+    for (r = 0; r < rows; r++) nnz += from->end[r] - from->begin[r];
+    a = hdi_csr_take(&s, (int32_t)rows, n, nnz, 1);
     for (r = 0; r < rows && e->status >= 0; r++) {
         hdi_sort_pairs(from->at + from->begin[r], from->end[r] - from->begin[r]);
         for (p = from->begin[r]; p < from->end[r]; p++) {
@@ -19992,7 +19968,7 @@ static void hdi_heat_defaults(hd_heat *heat, const hd_heat_opts *opts) {
     heat->fam.max_iterations = o->max_iterations;
 }
 
-static void hdi_heat_free(hd_heat *heat) {
+HEATDIFF_API void hd_heat_free(hd_heat *heat) {
     hd_context *ctx;
     if (!heat) return;
     ctx = heat->ctx;
@@ -20758,7 +20734,7 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
 #define HDI_PATCH_STOP 1e-4      /* of hdi_mass_solve: a hundredth of the functions */
-/* Of hdi_local_edges and hdi_local_hops: heat has to go there and back. */
+/* Of hdi_local_radius and hdi_local_hops: heat has to go there and back. */
 #define HDI_PATCH_REACH 0.5
 #define HDI_PATCH_HOPS 0.6
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
@@ -20814,19 +20790,16 @@ static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32
 /* Finds a piece with its margin; stops beyond `most` rows. */
 static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
-    const hd_laplacian *lap = h->heat->source;
+    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
     double edge = 0;
-    const int own = h->heat->n_sets > 0;
-    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * (own ? 1 : x->reach) * hdi_local_hops(lap);
     int32_t i;
-    hdi_local_clear(x->local, lap);
+    hdi_local_clear(x->local);
     for (i = begin; i < end; i++) {
-        edge += hdi_min(hdi_local_edge(lap, x->row[i]), root) / (end - begin);
-        if (hdi_local_add(x->local, lap, x->row[i], h->heat->ctx, h->e) < 0) return h->e->status;
+        edge += hdi_min(hdi_local_edge(h->heat->source, x->row[i]), root) / (end - begin);
+        if (hdi_local_add(x->local, x->row[i], h->e) < 0) return h->e->status;
     }
-    edge = own ? hdi_local_edges(lap, 0) * (edge + x->reach * root / 4)
-               : hdi_local_edges(lap, root / edge) * x->reach * edge;
-    return hdi_local_grow(x->local, lap, HDI_PATCH_REACH * edge, hops, most, h->heat->ctx, h->e);
+    edge = HDI_PATCH_REACH * hdi_local_radius(h->heat, edge, root, x->reach);
+    return hdi_local_grow(x->local, edge, hops, most, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
@@ -21091,14 +21064,10 @@ static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hd_report rep;
     int32_t tries;
     for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
-        double excess;
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
-        excess = hdi_min(rep.error_local / x->wanted, 1e16);
-        if (h->heat->n_sets == 0) x->reach = hdi_local_more(x->reach, tries - 1, excess);
-        else x->reach = hdi_max(x->reach, 1e-3) *
-                        (tries > 2 ? 1.5 : 1.05 + log(excess) / hdi_max(1, -log(x->wanted)));
+        x->reach = hdi_local_more(h->heat, x->reach, tries - 1, rep.error_local / x->wanted);
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21120,9 +21089,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
-    x->reach = h->heat->n_sets > 0 ? 0 : 1;
-    for (q = 0; q < h->heat->n_sets; q++)
-        x->reach = hdi_max(x->reach, hdi_local_reach(h->heat->sets + q, x->wanted));
+    x->reach = hdi_local_reach(h->heat, h->heat->n_sets);
     for (q = 0; q < h->ask.n_times; q++) x->t = hdi_max(x->t, factor * h->ask.t[q]);
     x->local = hdi_local_open(h->heat, h->e);
     x->row = HDI_TAKE(&h->s, int32_t, 2 * (uint64_t)x->n);
@@ -22533,7 +22500,7 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
     const int32_t n_times = h->n_times, inverses = x->query->by == HDI_BY_INVERSION;
     hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
     int32_t some = 0, few = n_times;
-    while (few > 0 && hdi_task_first(&x->task, h->times[few - 1] / x->unit)) few--;
+    while (few > 0 && hdi_task_near(&x->task, h->times[few - 1] / x->unit, x->task.serves)) few--;
     while (some < few && !hdi_task_near(&x->task, h->times[some] / x->unit, HDI_MODES_MOST)) some++;
     if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
     if (inverses) hdi_estimate_inverses(x, few, c);
@@ -24128,8 +24095,6 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
     if (c.e->status < 0 || hdi_sets_check(sets, count, c.e) < 0) return c.e->status;
     return hdi_heat_take_sets(heat, count, sets, c.e);
 }
-
-HEATDIFF_API void hd_heat_free(hd_heat *heat) { hdi_heat_free(heat); }
 
 HEATDIFF_API hd_status hd_shifted_solve(const hd_laplacian *lap, double t, hd_c64 theta, const hd_c64 *rhs,
                                         hd_c64 *x, const hd_solve_opts *opts, hd_solve_report *report,
