@@ -22596,30 +22596,25 @@ static void hdi_estimate_inverses(const hdi_estimate *x, int32_t early, hd_cost 
     const int share = early > 1 && open && !(x->mass == 1 && h->heat->source->B);
     const int32_t windows = share ? hdi_shared_windows(h->times, early, tol) : 0;
     double most, times = h->n_times;
-    hd_cost one;
+    hd_cost shared;
     hd_rational set;
-    memset(&one, 0, sizeof one);
     h->diagonal = 1;
     h->method = HD_METHOD_DIRECT;
     most = hdi_estimate_most(x);
     if (kind && kind->highest && open && most <= left) h->degree = HDI_RAT_KERNEL_MAX;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, &one);
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, c);
     h->degree = 0;
-    *c = one;
+    memset(&shared, 0, sizeof shared);
     if (windows > 0 &&
-        hdi_shared_pick(&set, pow(h->times[early - 1] / h->times[0], 1.0 / windows) * (1 + 1e-12), tol)) {
-        hd_cost shared;
-        memset(&shared, 0, sizeof shared);
+        hdi_shared_pick(&set, pow(h->times[early - 1] / h->times[0], 1.0 / windows) * (1 + 1e-12), tol))
         hdi_estimate_set(x, &set, early, &shared);
-        if (shared.bytes <= left) {
-            *c = shared;
-            times *= (double)windows / early;
-        }
+    if (shared.possible && shared.bytes <= left) {
+        shared.bytes = hdi_max(shared.bytes, c->bytes);
+        *c = shared;
+        times *= (double)windows / early;
     }
     c->flops *= times;
     c->seconds *= times;
-    c->possible = 1;
-    c->bytes = hdi_max(c->bytes, one.bytes);
     c->bytes_most = hdi_max(c->bytes, most);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
