@@ -14941,18 +14941,19 @@ typedef struct hdi_distance_row {
     int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
+    int32_t squares;             /* 1: d^2 = f_ss - 2 f_sv + f_vv; eigenpairs and columns serve no others */
     int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
-    /* The default goes to the highest degree where the bound on the error relative to the largest distance is
-     * above the first number, 0: never. The bound of degree 9 is expected at the second one times sqrt(t)/h,
-     * as seen on meshes of 1K to 50K vertices; 0: there is no such rule. */
-    double sure, expected;
+    /* The default begins with the highest degree: that of 9 would do only up to sqrt(t) = 0.8 h, as seen on
+     * meshes of 1K to 50K vertices. */
+    int32_t highest;
+    double sure;                 /* else it takes over where the bound is above this; 0: never */
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 3.5e-7, 4.4e-7},
-    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 3.5e-7, 0},
-    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
-    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 1, 1, 0},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 1, 0, 0, 3.5e-7},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 1, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 1, 0, 0, 0}
 };
 enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
@@ -16734,7 +16735,7 @@ static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd
         hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
                          a->t[q], e);
     hdi_refuse(x->power && a->n_times > 1, "spectrum: this distance has no time", e);
-    hdi_refuse(a->distance && !row, "spectrum: unknown distance", e);
+    hdi_refuse(a->distance && !(row && row->squares), "spectrum: unknown distance", e);
     hdi_refuse(!a->distance && !x->mass && a->kind != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
     return e->status;
 }
@@ -21242,6 +21243,9 @@ typedef struct hdi_metric {
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
     hd_report *local;            /* f is by patches, columns by balls: their errors; NULL: not so */
+    struct hdi_mode_sum *modes;  /* eigenpairs answer, and nothing above is there; NULL: not so */
+    const int32_t *column;       /* [in.count] which time of the query each function is for */
+    hd_report *one;              /* by times; NULL: all is for the report of the call */
 } hdi_metric;
 
 static hdi_wanted hdi_metric_wanted(const hd_heat *heat, const hdi_distance_row *kind) {
@@ -21311,28 +21315,26 @@ static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
 static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                  int32_t count, hdi_scope *s) {
     const hdi_elim *m = &h->heat->elim;
+    const hd_laplacian *lap = h->heat->source;
     memset(x, 0, sizeof *x);
     x->h = h;
     x->kind = kind;
     x->root = kind->mass > 0 ? 1 / sqrt(h->heat->scale) : sqrt(h->heat->scale);
-    x->f = hdi_diagonal_take(m->sym.n, kind->mass, s);
+    x->f = hdi_diagonal_take(lap->n_active, kind->mass, s);
     x->rounding = HDI_TAKE_ZERO(s, double, count);
-    x->work = HDI_TAKE(s, double, kind->power > 0 ? hdi_ground_room(m) : (uint64_t)m->sym.n + 1);
-    h->lap = m->lap;
-    hdi_inverse_tell(h);
+    x->work = HDI_TAKE(s, double, kind->power > 0 ? hdi_ground_room(m) : (uint64_t)lap->n + 1);
     return h->e->status;
 }
 
-/* Makes room for the columns of `group` sources at the same time; with `bounded` those of g, too, where they
- * are of use. */
-static hd_status hdi_metric_room(hdi_metric *x, int32_t group, int bounded, hdi_scope *s) {
+/* Makes room for the columns of `group` sources at the same time. */
+static hd_status hdi_metric_room(hdi_metric *x, int32_t group, hdi_scope *s) {
     const int32_t count = hdi_high32(x->in.count, 1), n_poles = x->in.count > 0 ? x->in.set->n_poles : 0;
-    x->bounded = x->bounded && bounded;
+    const int32_t n = x->h->heat->source->n_active;
     x->group = group;
     x->rows.n = (x->bounded ? 2 : 1) * count;
     x->rows.stride = (x->bounded ? 1 : 2) * n_poles;
     x->rows.weight = x->in.weight;
-    x->rows.sum = HDI_TAKE(s, double, (uint64_t)group * (uint64_t)x->rows.n * (uint64_t)x->h->lap->n_active);
+    x->rows.sum = HDI_TAKE(s, double, (uint64_t)group * (uint64_t)x->rows.n * (uint64_t)n);
     x->off = HDI_TAKE(s, hdi_column_parts, (uint64_t)group * (uint64_t)count);
     return x->h->e->status;
 }
@@ -21357,35 +21359,25 @@ static void hdi_report_unbound(hd_report *rep) {
 /* The diagonal by patches at the time under way, in the order of the source's rows. A column's errors are the
  * same everywhere; those of B times it are by the sums of B's rows. local: the reports. */
 static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
-                                    hd_report *local, hdi_scope *s) {
+                                             const char *reason, hd_report *local, hdi_scope *s) {
     const hd_laplacian *lap = h->heat->source;
     const double t = kind->time * h->ask.t[h->now];
     hdi_diagonals to;
     hdi_heat_call d;
-    hd_report rest;
     int32_t i;
-    memset(x, 0, sizeof *x);
     memset(&to, 0, sizeof to);
-    x->h = h;
-    x->kind = kind;
-    x->root = x->group = 1;
-    x->local = local;
-    x->f = hdi_diagonal_take(lap->n_active, kind->mass, s);
-    x->rounding = HDI_TAKE_ZERO(s, double, 1);
-    x->work = HDI_TAKE(s, double, (uint64_t)lap->n + 1);
-    x->off = HDI_TAKE(s, hdi_column_parts, 1);
-    x->rows.n = 1;
-    x->rows.sum = HDI_TAKE(s, double, lap->n_active);
     to.D = HDI_TAKE(s, double, lap->n);
+    if (hdi_metric_take(x, h, kind, 1, s) < 0 || hdi_metric_room(x, 1, s) < 0) return h->e->status;
+    x->root = 1;
+    x->local = local;
     h->lap = lap;
-    if (h->e->status < 0) return h->e->status;
     if (hdi_kernel_begin(&d, h->heat, HD_KERNEL_SYMMETRIC, local, NULL) >= 0 &&
         hdi_times_check(&d, 1, &t, 1) >= 0) {
         to.task.h = &d;
         to.mass = kind->mass;
-        (void)hdi_diagonals_by_patches(&to, h->rep->reason);
+        (void)hdi_diagonals_by_patches(&to, reason);
     }
-    if (hdi_heat_end(&d) < 0) *h->e = local->error;
+    if (hdi_heat_end(&d) < 0) return (*h->e = local->error).status;
     for (i = 0; i < lap->n_active; i++) {
         const double size = kind->mass > 0 ? hdi_mass_row(lap, i) : 1;
         x->f.value[i] = to.D[lap->vertex[i]];
@@ -21393,18 +21385,21 @@ static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, co
         x->f.spread[i] = size * size;
     }
     *x->rounding = local->error_relative;
-    rest = *local;
-    hdi_report_unbound(&rest);
-    if (h->e->status >= 0) hdi_report_merge(h->rep, &rest);
+    *h->rep = *local;
+    hdi_report_unbound(h->rep);
     return h->e->status;
 }
 
-/* The metric of the time under way by poles, for `group` sources at the same time. */
-static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int bounded,
-                                 hdi_metric *x, hdi_scope *s) {
+/* The metric by poles, for `group` sources at the same time: of the time under way or, with q1 > 0, of times
+ * q0 to q1 - 1 of the call, sorted, which share theirs. */
+static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int32_t q0,
+                                 int32_t q1, hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
-    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, 1, s) < 0) return h->e->status;
-    if (kind->time > 0) {                        /* d^2 of a filter is the sum of the filter itself */
+    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, hdi_high32(q1 - q0, 1), s) < 0)
+        return h->e->status;
+    h->lap = heat->elim.lap;
+    hdi_inverse_tell(h);
+    if (kind->time > 0 && q1 == 0) {             /* d^2 of a filter is the sum of the filter itself */
         h->t = (hdi_heat_filtered(heat) ? 1 : kind->time) * hdi_heat_scaled(heat, h->ask.t[h->now]);
         x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
@@ -21414,10 +21409,94 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
         hdi_diagonal_means(h->lap, &x->f);
         *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
     } else if (h->e->status >= 0) {
-        if (hdi_inverses_take(&x->in, h, NULL, 1, hdi_metric_wanted(heat, kind), 0, s) >= 0)
+        if (hdi_inverses_take(&x->in, h, q1 > 0 ? h->times + q0 : NULL, hdi_high32(q1 - q0, 1),
+                              hdi_metric_wanted(heat, kind), HDI_SHARED_DISTANCE_TOL, s) >= 0)
             (void)hdi_metric_invert(x, s);
     }
-    return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, bounded, s);
+    return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, s);
+}
+
+/* ---- distances from the smallest eigenpairs ---- */
+/* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
+ *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
+ * does not cancel, however small it is; its bounds are in [25]. Constants drop out within a component. */
+
+/* Distances between a source and all vertices at one time. */
+typedef struct hdi_mode_sum {
+    hdi_spec_sums sums;
+    const hd_laplacian *lap;
+    int32_t own;                 /* the component of the source, -1: none, or several */
+    double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
+    double constant_off;         /* how much rounding of the sums over the source changes that of constants */
+    double at, rest;             /* B 1 there, in two doubles */
+} hdi_mode_sum;
+
+static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
+    const int weighted = a->sums.mass;
+    const double *one = a->sums.of->one;
+    int32_t q;
+    hdi_spec_sum_from(&a->sums, &source);
+    a->own = hdi_terms_component(a->lap, &source);
+    a->at = hdi_terms_value(&source, one);
+    a->rest = hdi_terms_value(&source, one + a->lap->n);
+    memset(a->share, 0, sizeof a->share);
+    a->constant_off = 0;
+    for (q = 0; q < source.n && a->sums.bank.first > 0; q++) {
+        const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
+        const double w = hdi_terms_weight(&source, q), by = weighted ? w * one[v] : w;
+        if (row < 0) continue;
+        a->share[a->lap->component[row]] += by;
+        if (source.weight && (weighted || a->own < 0))
+            a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
+                sqrt(a->lap->component_mass[a->lap->component[row]]);
+    }
+    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
+}
+
+/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
+ * in two doubles. */
+static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
+    const hd_laplacian *lap = a->lap;
+    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
+    const double *one = a->sums.of->one, *rest = one + lap->n;
+    double sum = 0;
+    int32_t c;
+    if (own >= 0 && own == a->own && !mass) return 0;
+    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
+        const double by = c == own ? (mass ? one[v] : 1) : 0;
+        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
+                                                     : a->share[c] - by;
+        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
+    }
+    return sum;
+}
+
+/* Makes the distance to v of the part that decays, and notes its bound. */
+static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
+    const double still = hdi_modes_constant(a, v);
+    double *d = a->sums.column + v;
+    hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : *d);
+    part.rounding += a->constant_off;
+    if (still > 0) {
+        *d = hdi_pythag(still, *d);
+        part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * *d;
+    }
+    rep->n_lost += *d < 10 * hdi_parts_sum(&part);
+    hdi_ledger_note(ledger, *d, part);
+}
+
+/* d from the source to vertices [begin, end), which are all or one; the account goes to the ledger. */
+static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, int32_t begin, int32_t end, double *d,
+                             hdi_ledger *ledger, hd_report *rep) {
+    const int32_t same = source.weight ? -1 : source.one;
+    int32_t v;
+    hdi_mode_sum_from(a, source);
+    a->sums.column = d;
+    if (begin > 0) hdi_spec_sum_task(&a->sums, begin, end);
+    else hdi_parallel_ranges(a->sums.of->s.context, end, 1024, hdi_spec_sum_task, &a->sums);
+    if (same >= 0) d[same] = 0;
+    for (v = begin; v < end; v++)
+        if (v != same) hdi_mode_sum_note(a, v, ledger, rep);
 }
 
 /* ---- columns of a metric ---- */
@@ -21476,22 +21555,31 @@ static hd_status hdi_metric_solve_plain(const hdi_metric *x, const hdi_terms *so
     return x->h->e->status;
 }
 
+/* The columns of k sources as a call of their own would have them, at `times` the time under way. U [n k] */
+static hd_status hdi_distance_columns(hdi_heat_call *h, const hdi_distance_row *kind, double times, int32_t k,
+                                      const hdi_terms *source, double *U, hd_report *rep) {
+    const double t = times * h->ask.t[h->now];
+    hdi_heat_call c;
+    if (hdi_kernel_begin(&c, h->heat, hdi_distance_kernel(kind), rep, NULL) >= 0 &&
+        hdi_times_check(&c, 1, &t, 0) >= 0) {
+        c.ask.k = k;
+        c.ask.terms = source;
+        c.ask.U = U;
+        c.ask.ldu = (size_t)h->heat->source->n;
+        c.degree = h->degree;
+    }
+    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
+    return h->e->status;
+}
+
 /* The column of one source by a ball. */
 static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *source) {
-    const double t = x->kind->time * x->h->ask.t[x->h->now];
     const hd_laplacian *lap = x->h->heat->source;
     double most = 0;
-    hdi_heat_call c;
     hd_report rep;
     int32_t i;
-    if (hdi_kernel_begin(&c, x->h->heat, hdi_distance_kernel(x->kind), &rep, NULL) >= 0 &&
-        hdi_times_check(&c, 1, &t, 1) >= 0) {
-        c.ask.k = 1;
-        c.ask.terms = source;
-        c.ask.U = x->work;
-        c.ask.ldu = (size_t)lap->n;
-    }
-    if (hdi_heat_run(&c) < 0) return (void)(*x->h->e = rep.error), x->h->e->status;
+    if (hdi_distance_columns(x->h, x->kind, x->kind->time, 1, source, x->work, &rep) < 0)
+        return x->h->e->status;
     for (i = 0; i < lap->n_active; i++) {
         x->rows.sum[i] = x->work[lap->vertex[i]];
         most = hdi_max(most, fabs(x->rows.sum[i]));
@@ -21508,6 +21596,7 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
 static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, int32_t k) {
     hdi_heat_call c;
     int32_t i, q;
+    if (x->modes) return HD_OK;
     if (x->local) return hdi_metric_solve_ball(x, source);
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
     if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
@@ -21524,10 +21613,21 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
     return HD_OK;
 }
 
-/* f, g and spread of a source itself, and what rounding of its diagonal is relative to. Of a vertex they
+/* f, g and spread of an end of a distance, and what rounding of its diagonal is relative to. Of a vertex they
  * are those of the diagonals. Of several f and g are taken from their columns u and g, and off bounds the
  * error of f by rounding; spread is a bound, and so is g where its column is NULL. */
-typedef struct hdi_metric_self { double f, g, spread, size, off; } hdi_metric_self;
+typedef struct hdi_metric_end { double f, g, spread, size, off; } hdi_metric_end;
+
+/* That of row r; negative: there is none. */
+static hdi_metric_end hdi_metric_row(const hdi_metric *x, int32_t r) {
+    hdi_metric_end end = {0, 0, 0, 0, 0};
+    if (r < 0) return end;
+    end.f = x->f.value[r];
+    end.g = x->f.g[r];
+    end.spread = x->f.spread[r];
+    end.size = hdi_diagonal_size(&x->f, r);
+    return end;
+}
 
 /* How much an error of these sizes in the norms of B + tL and B changes a value: 0 times infinity is 0. */
 static double hdi_metric_off(double by_m, double by_b, const hdi_column_parts *off) {
@@ -21535,66 +21635,55 @@ static double hdi_metric_off(double by_m, double by_b, const hdi_column_parts *o
                    hdi_bound_times(hdi_finite(by_b) ? by_b : HUGE_VAL, off->by_b));
 }
 
-static hdi_metric_self hdi_metric_source(const hdi_metric *x, const hdi_terms *s, const hdi_column_parts *off,
-                                         const double *u, const double *g) {
-    hdi_metric_self self = {0, 0, 0, 0, 0};
+static hdi_metric_end hdi_metric_source(const hdi_metric *x, const hdi_terms *s, const hdi_column_parts *off,
+                                        const double *u, const double *g) {
+    hdi_metric_end end = {0, 0, 0, 0, 0};
     /* sums of |c_v| sqrt(g_v), |c_v| sqrt(spread_v), |c_v u_v| */
     double by_m = 0, by_b = 0, size = 0;
     int32_t q;
+    if (!s->weight) return hdi_metric_row(x, x->h->lap->row[s->one]);
     for (q = 0; q < s->n; q++) {
-        const int32_t r = x->h->lap->row[hdi_terms_at(s, q)];
-        const double w = hdi_terms_weight(s, q);
+        const int32_t r = x->h->lap->row[s->vertex[q]];
+        const double w = s->weight[q];
         if (r < 0) continue;
         by_m += fabs(w) * sqrt(hdi_max(0, x->f.g[r]));
         by_b += fabs(w) * sqrt(x->f.spread[r]);
         size += fabs(w * u[r]);
-        self.f = s->weight ? self.f + w * u[r] : x->f.value[r];
-        self.g = s->weight ? self.g + (g ? w * g[r] : 0) : x->f.g[r];
-        self.spread = x->f.spread[r];
-        self.size = s->weight ? 0 : hdi_diagonal_size(&x->f, r);
+        end.f += w * u[r];
+        if (g) end.g += w * g[r];
     }
-    if (!s->weight) return self;
-    if (!g) self.g = by_m * by_m;
-    self.spread = by_b * by_b;
-    self.off = hdi_metric_off(by_m, by_b, off) + (double)s->n * DBL_EPSILON * size;
-    return self;
+    if (!g) end.g = by_m * by_m;
+    end.spread = by_b * by_b;
+    end.off = hdi_metric_off(by_m, by_b, off) + (double)s->n * DBL_EPSILON * size;
+    return end;
 }
 
-/* Bound on the rational error of d^2 between the source and row r (negative: none): by the form of g, whose
- * entry g_sr may be known, and by that of spread. Each bounds it alone. */
-static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_self *self, int32_t r,
-                                  const double *g_sr) {
-    const double gs = self->g, g = r < 0 ? 0 : x->f.g[r], spread = r < 0 ? 0 : x->f.spread[r];
-    const double root = sqrt(hdi_max(0, gs)) + sqrt(hdi_max(0, g)), wide = sqrt(self->spread) + sqrt(spread);
-    double form = root * root;
-    if (!x->f.set) return 0;
-    if (g_sr)
-        form = hdi_min(form, hdi_max(0, gs + g - 2 * *g_sr) +
-                             (x->rounding[x->q] + 8 * DBL_EPSILON) * (fabs(gs) + fabs(g)));
-    return hdi_diagonal_off(&x->f, form, wide * wide);
+/* Bound on the rational error of d^2 between two ends: by the form of g, of which g_ab may be known, and by
+ * that of spread. Each bounds it alone. */
+static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
+                                  const double *g_ab) {
+    const double root = sqrt(hdi_max(0, a->g)) + sqrt(hdi_max(0, b->g)), relative = x->rounding[x->q];
+    const double wide = sqrt(a->spread) + sqrt(b->spread), other = g_ab ? a->g + b->g - 2 * *g_ab : HUGE_VAL;
+    const double off = (relative + 8 * DBL_EPSILON) * (fabs(a->g) + fabs(b->g));
+    return hdi_diagonal_off(&x->f, hdi_min(root * root, hdi_max(0, other) + off), wide * wide);
 }
 
-/* How much rounding of the diagonals and of the column changes d^2. given: there is a column. */
-static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_self *self, int given, int32_t r,
+/* How much rounding of the diagonals and of the column of a changes d^2. off: of the column, or NULL */
+static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                   const hdi_column_parts *off) {
-    const double relative = x->rounding[x->q], f = r < 0 ? 0 : x->f.value[r];
-    double sum = self->off + 4 * DBL_EPSILON * (fabs(self->f) + fabs(f));
+    const double relative = x->rounding[x->q];
+    double sum = a->off + 4 * DBL_EPSILON * (fabs(a->f) + fabs(b->f));
     if (!hdi_finite(relative)) return HUGE_VAL;
-    if (r >= 0 && given) sum += 2 * hdi_metric_off(sqrt(hdi_max(0, x->f.g[r])), sqrt(x->f.spread[r]), off);
-    return relative > 0 ? sum + relative * (self->size + (r < 0 ? 0 : hdi_diagonal_size(&x->f, r))) : sum;
+    if (off) sum += 2 * hdi_metric_off(sqrt(hdi_max(0, b->g)), sqrt(b->spread), off);
+    return relative > 0 ? sum + relative * (a->size + b->size) : sum;
 }
 
 /* An error in parts that are in the ratio of those of the report. */
 static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     const hdi_parts rounding = {0, 0, error, 0};
-    hdi_parts whole;
-    double sum;
-    whole.rational = rep->error_rational;
-    whole.solver = rep->error_solver;
-    whole.rounding = rep->error_rounding;
-    whole.local = rep->error_local;
-    sum = hdi_parts_sum(&whole);
-    return sum > 0 && hdi_finite(sum) ? hdi_parts_scale(error / sum, whole) : rounding;
+    const hdi_parts whole = {rep->error_rational, rep->error_solver, rep->error_rounding, rep->error_local};
+    const double sum = hdi_parts_sum(&whole);
+    return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
 /* Notes the distance whose d^2 is given, with its errors. Returns it. */
@@ -21607,7 +21696,7 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
         part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
         part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
     }
-    if (x->local && hdi_finite(error)) part = hdi_parts_share(x->local, error);
+    if (x->local) part = hdi_parts_share(x->local, error);
     rep->n_lost += delta > 0 && d2 < 10 * delta;
     hdi_ledger_note(ledger, x->root * d, part);
     return x->root * d;
@@ -21616,176 +21705,134 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
 /* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2
  * bounds the rational error, else the diagonals do, which is less sharp near the source. Between
  * components distances without a time are infinite; a ledger would take these for answers that overflow. */
-static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
+static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep, hdi_ledger *ledger) {
     const hd_laplacian *lap = x->h->lap;
     const double *u = hdi_metric_sum(x, i, x->q, 0), *g = x->bounded ? hdi_metric_sum(x, i, x->q, 1) : NULL;
     const hdi_column_parts *off = x->off + i * hdi_high32(x->in.count, 1) + x->q;
-    const hdi_metric_self self = hdi_metric_source(x, s, off, u, g);
+    const hdi_metric_end from = hdi_metric_source(x, s, off, u, g);
     const int32_t own = hdi_terms_component(lap, s);
     int32_t v;
     for (v = 0; v < lap->n; v++) {
         const int32_t r = lap->row[v];
+        const hdi_metric_end to = hdi_metric_row(x, r);
         const int apart = x->kind->power > 0 && (r < 0 || own < 0 || lap->component[r] != own);
-        const double d2 = self.f - (r < 0 ? 0 : 2 * u[r] - x->f.value[r]);
         const int same = !s->weight && v == s->one;
         out[v] = same || !apart ? 0 : HUGE_VAL;
         if (same || apart) continue;
-        out[v] = hdi_metric_note(x, d2, hdi_metric_rational(x, &self, r, g && r >= 0 ? g + r : NULL),
-                                 hdi_metric_rounding(x, &self, s->weight || own >= 0, r, off), rep, ledger);
+        out[v] = hdi_metric_note(x, from.f - (r < 0 ? 0 : 2 * u[r] - to.f),
+                                 hdi_metric_rational(x, &from, &to, g && r >= 0 ? g + r : NULL),
+                                 hdi_metric_rounding(x, &from, &to, s->weight || own >= 0 ? off : NULL),
+                                 rep, ledger);
     }
 }
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     const hd_rational *set = x->f.set;
     const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
+    hdi_ledger ledger = hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
+                                         HD_EVIDENCE_MEASURED, 1);
+    if (HDI_HAS_MODES && x->modes) return hdi_modes_ledger();
     if (x->local) {
-        hdi_ledger ledger = hdi_ledger_begin(x->local->evidence_rational, x->local->evidence_solver,
-                                             HD_EVIDENCE_MEASURED, 1);
+        ledger.evidence.rational = x->local->evidence_rational;
+        ledger.evidence.solver = x->local->evidence_solver;
         ledger.evidence.local = x->local->evidence_local;
-        return ledger;
     }
-    return hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
-                            HD_EVIDENCE_MEASURED, 1);
+    return ledger;
 }
 
-/* ---- distances from the smallest eigenpairs ---- */
-/* At large t all vertices look alike, and f_ss - 2 f_sv + f_vv cancels. There few eigenpairs are left, and
- *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
- * does not cancel, however small it is; its bounds are in [25]. Constants drop out within a component. */
-
-/* Distances between a source and all vertices at one time. */
-typedef struct hdi_mode_sum {
-    hdi_spec_sums sums;
-    const hd_laplacian *lap;
-    hdi_terms source;
-    int32_t own;                 /* its component, -1: none, or several */
-    double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
-    double constant_off;         /* how much rounding of the sums over the source changes that of constants */
-    double at, rest;             /* B 1 there, in two doubles */
-} hdi_mode_sum;
-
-static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
-    const int weighted = a->sums.mass;
-    const double *one = a->sums.of->one;
-    int32_t q;
-    hdi_spec_sum_from(&a->sums, &source);
-    a->source = source;
-    a->own = hdi_terms_component(a->lap, &source);
-    a->at = hdi_terms_value(&source, one);
-    a->rest = hdi_terms_value(&source, one + a->lap->n);
-    memset(a->share, 0, sizeof a->share);
-    a->constant_off = 0;
-    for (q = 0; q < source.n && a->sums.bank.first > 0; q++) {
-        const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
-        const double w = hdi_terms_weight(&source, q), by = weighted ? w * one[v] : w;
-        if (row < 0) continue;
-        a->share[a->lap->component[row]] += by;
-        if (source.weight && (weighted || a->own < 0))
-            a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
-                sqrt(a->lap->component_mass[a->lap->component[row]]);
-    }
-    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
+/* Distances from source i of those solved for, at the time of function x->q, and what the report says. */
+static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
+                                hd_report *rep) {
+    hdi_ledger ledger = hdi_metric_ledger(x);
+    if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, *s, 0, x->modes->lap->n, out, &ledger, rep);
+    else hdi_metric_differences(x, s, i, out, rep, &ledger);
+    hdi_ledger_close(&ledger, rep);
 }
 
-/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
- * in two doubles. */
-static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
-    const hd_laplacian *lap = a->lap;
-    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
-    const double *one = a->sums.of->one, *rest = one + lap->n;
-    double sum = 0;
-    int32_t c;
-    if (own >= 0 && own == a->own && !mass) return 0;
-    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
-        const double by = c == own ? (mass ? one[v] : 1) : 0;
-        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
-                                                     : a->share[c] - by;
-        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
-    }
-    return sum;
-}
-
-/* Makes the distance to v of the part that decays, and notes its bound. */
-static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
-    const double still = hdi_modes_constant(a, v);
-    double *d = a->sums.column + v;
-    hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : *d);
-    part.rounding += a->constant_off;
-    if (still > 0) {
-        *d = hdi_pythag(still, *d);
-        part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * *d;
-    }
-    rep->n_lost += *d < 10 * hdi_parts_sum(&part);
-    hdi_ledger_note(ledger, *d, part);
-}
-
-/* d from the source to all vertices; the account goes to the ledger. */
-static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, double *d, hdi_ledger *ledger, hd_report *rep,
-                             hd_context *ctx) {
-    const int32_t n = a->lap->n, only = source.weight ? -1 : source.one;
-    int32_t v;
-    hdi_mode_sum_from(a, source);
-    a->sums.column = d;
-    hdi_parallel_ranges(ctx, n, 1024, hdi_spec_sum_task, &a->sums);
-    if (only >= 0) d[only] = 0;
-    for (v = 0; v < n; v++)
-        if (v != only) hdi_mode_sum_note(a, v, ledger, rep);
-}
-
-/* Makes the sum for the time under way; arrays are in s. */
-static hd_status hdi_mode_sum_make(hdi_mode_sum *a, hdi_heat_call *h, const hdi_distance_row *kind,
-                                   hdi_scope *s) {
-    memset(a, 0, sizeof *a);
-    a->lap = h->heat->source;
-    if (hdi_late_make(&a->sums, h, 1, kind->mass > 0, s) >= 0)
-        a->sums.inner = HDI_TAKE(s, double, a->lap->n);
-    return h->e->status;
-}
-
-/* ---- both ways ---- */
+/* ---- which way ---- */
 
 /* A query for distances of a kind. Those below begin with this struct. */
 typedef struct hdi_distance_query hdi_distance_query;
 struct hdi_distance_query {
     hdi_task task;
     const hdi_distance_row *kind;
-    /* Answers the time under way by a metric or, where that is NULL, from eigenpairs. */
-    void (*answer)(const hdi_distance_query *to, hdi_metric *x, hdi_mode_sum *sum);
-    const char *reason;          /* of patches */
+    int32_t group;               /* sources that are solved for at the same time */
+    int highest;                 /* poles begin with the highest degree */
+    void (*answer)(const hdi_distance_query *to, hdi_metric *x);     /* the time under way */
+    const char *local;           /* the reason of patches; NULL: not by these */
 };
 
 /* The answer from the eigenpairs that are there. */
 static hd_status hdi_distance_by_pairs(hdi_task *task) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
-    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hdi_heat_call *h = task->h;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_mode_sum sum;
-    if (hdi_mode_sum_make(&sum, task->h, to->kind, &s) >= 0) to->answer(to, NULL, &sum);
-    return hdi_scope_end(&s);
-}
-
-/* The answer by poles, for so many sources at the same time, as in hdi_metric_make. */
-static HDI_COLD hd_status hdi_distance_by_metric(const hdi_distance_query *to, int32_t group, int bounded) {
-    hdi_scope s = hdi_scope_begin(to->task.h->heat->ctx, to->task.h->e);
     hdi_metric x;
-    if (hdi_metric_make(to->task.h, to->kind, group, bounded, &x, &s) >= 0) to->answer(to, &x, NULL);
+    memset(&x, 0, sizeof x);
+    memset(&sum, 0, sizeof sum);
+    x.h = h;
+    x.group = 1;
+    x.column = &h->now;
+    x.modes = &sum;
+    sum.lap = h->heat->source;
+    if (hdi_late_make(&sum.sums, h, 1, to->kind->mass > 0, &s) >= 0)
+        sum.sums.inner = HDI_TAKE(&s, double, sum.lap->n);
+    if (h->e->status >= 0) to->answer(to, &x);
     return hdi_scope_end(&s);
 }
 
-/* The answer by patches and balls. */
-static HDI_COLD hd_status hdi_distance_by_patches(hdi_task *task) {
+/* The answer by poles, or by patches and balls: at the time under way or, with q1 > 0, at times q0 to q1 - 1
+ * of the call, sorted, which share theirs and whose reports go to one. */
+static HDI_COLD hd_status hdi_distance_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
-    hdi_scope s = hdi_scope_begin(task->h->heat->ctx, task->h->e);
+    hdi_heat_call *h = task->h;
+    const int32_t count = hdi_high32(q1 - q0, 1);
+    const int32_t group = hdi_low32(to->group, hdi_high32(1, HDI_LANES / count));
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hd_report local;
     hdi_metric x;
-    task->h->rep->reason = to->reason;
-    if (hdi_metric_patches(&x, task->h, to->kind, &local, &s) >= 0) to->answer(to, &x, NULL);
-    task->h->rep->method = HD_METHOD_LOCAL;
+    int32_t q;
+    if (to->local) (void)hdi_metric_patches(&x, h, to->kind, to->local, &local, &s);
+    else (void)hdi_metric_make(h, to->kind, group, q0, q1, &x, &s);
+    x.column = q1 > 0 ? h->time_column + q0 : &h->now;
+    x.one = one;
+    for (q = 0; q < count && one; q++) one[x.column[q]] = *h->rep;
+    if (h->e->status >= 0) to->answer(to, &x);
     return hdi_scope_end(&s);
 }
 
-/* Answers a query for distances: by patches where method local is asked for, where that costs less, and where
- * nothing else fits the byte limit. */
+static hd_status hdi_distance_by_poles(hdi_task *task) {
+    const hdi_distance_query *to = (const hdi_distance_query *)task;
+    hdi_heat_call *h = task->h;
+    if (to->highest && hdi_degree_open(h->heat)) h->degree = HDI_RAT_KERNEL_MAX;
+    (void)hdi_distance_window(task, 0, 0, NULL);
+    if (!to->highest && to->kind->sure > 0) task->excess = h->rep->error_rational / to->kind->sure;
+    h->degree = 0;
+    return h->e->status;
+}
+
+/* Sets up a query from k sources. How far eigenpairs have to reach is given by exp(depth) = |y| over the part
+ * that may be left out. The largest distance is at least about 1/sqrt(mass) times exp(-t low). */
+static void hdi_distance_task(hdi_distance_query *to, hdi_heat_call *h, int32_t k) {
+    const hdi_distance_row *kind = to->kind;
+    const double span = hdi_modes_span(h->heat);
+    const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
+    memset(&to->task, 0, sizeof to->task);
+    to->task.h = h;
+    to->task.pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
+    to->task.poles = hdi_distance_by_poles;
+    to->group = hdi_low32(k, HDI_LANES);
+    to->highest = kind->highest;
+    to->local = NULL;
+    if (!HDI_HAS_MODES || !kind->squares || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
+    to->task.serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
+    to->task.depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
+}
+
+/* Answers a query: by patches where method local is asked for, where that costs less, and where nothing else
+ * fits the byte limit. */
 static HDI_COLD hd_status hdi_distance_answer(hdi_distance_query *to) {
     hdi_heat_call *h = to->task.h;
     hd_heat *heat = h->heat;
@@ -21794,33 +21841,23 @@ static HDI_COLD hd_status hdi_distance_answer(hdi_distance_query *to) {
     const hd_heat_opts opts = heat->opts;
     hdi_diagonals diagonal;
     hdi_patches x;
+    const char *reason = asked ? "asked for" : HDI_PATCHES_PAY;
     memset(&diagonal, 0, sizeof diagonal);
     diagonal.task.h = h;
-    to->reason = asked ? "asked for" : HDI_PATCHES_PAY;
     if (!may || (!asked && !hdi_patches_pay(&x, &diagonal, to->kind->time))) {
         if (h->e->status < 0 || hdi_heat_sparing(h, &to->task) >= 0 || !may ||
             !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
         hdi_error_clear(h->e);
         hdi_heat_free_factors(heat);
-        to->reason = HDI_PATCHES_FIT;
+        reason = HDI_PATCHES_FIT;
     }
+    to->local = reason;
     to->task.serves = 0;
     to->task.together = NULL;
-    to->task.poles = hdi_distance_by_patches;
     heat->opts.method = HD_METHOD_LOCAL;
     heat->opts.tol = hdi_min(opts.tol, HDI_METRIC_TOL);
     (void)hdi_task_run(&to->task);
     heat->opts = opts;
-    return h->e->status;
-}
-
-/* Distances from one source, by a metric or, where that is NULL, from eigenpairs. */
-static hd_status hdi_distances_from(hdi_heat_call *h, const hdi_metric *x, hdi_mode_sum *sum,
-                                    const hdi_terms *from, double *d) {
-    hdi_ledger ledger = x ? hdi_metric_ledger(x) : hdi_modes_ledger();
-    if (HDI_HAS_MODES && sum) hdi_mode_sum_run(sum, *from, d, &ledger, h->rep, h->heat->ctx);
-    else if (hdi_metric_solve(x, from, 1) >= 0) hdi_metric_distance(x, from, 0, d, h->rep, &ledger);
-    if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     return h->e->status;
 }
 
@@ -21835,92 +21872,35 @@ typedef struct hdi_distances {
     size_t ld;
 } hdi_distances;
 
-static double *hdi_distances_at(const hdi_distances *to, int32_t r, int32_t q) {
-    const size_t n_times = (size_t)hdi_high32(to->of.task.h->ask.n_times, 1);
-    return to->D + ((size_t)r * n_times + (size_t)q) * to->ld;
-}
-
-/* All sources by a metric: the times of its functions are columns of the query, whose reports are in one;
- * NULL: it is the call's. */
-static hd_status hdi_distances_of(const hdi_distances *to, hdi_metric *x, const int32_t *column,
-                                  hd_report *one) {
-    hdi_heat_call *h = to->of.task.h;
-    int32_t r, k, i, q;
-    for (r = 0; r < to->k && h->e->status >= 0; r += k) {
-        k = hdi_low32(to->k - r, x->group);
-        if (hdi_metric_solve(x, to->source + r, k) < 0) break;
-        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
-            const int32_t at = column[q];
-            hd_report *rep = one ? one + at : h->rep;
-            hdi_metric_at(x, q);
-            for (i = 0; i < k; i++) {
-                hdi_ledger ledger = hdi_metric_ledger(x);
-                hdi_metric_distance(x, to->source + r + i, i, hdi_distances_at(to, r + i, at), rep, &ledger);
-                hdi_ledger_close(&ledger, rep);
-            }
-        }
-    }
-    return h->e->status;
-}
-
-static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x) {
     const hdi_distances *to = (const hdi_distances *)of;
     hdi_heat_call *h = of->task.h;
-    int32_t r;
-    if (x) (void)hdi_distances_of(to, x, &h->now, NULL);
-    for (r = 0; r < to->k && sum && h->e->status >= 0; r++)
-        if (hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) >= 0)
-            (void)hdi_distances_from(h, NULL, sum, to->source + r, hdi_distances_at(to, r, h->now));
-}
-
-/* Is the bound of degree 9 sure to be too large at time t? */
-static int hdi_distance_sure(const hd_heat *heat, const hdi_distance_row *kind, double t) {
-    return heat->source->h > 0 && kind->expected * sqrt(t) > kind->sure * heat->source->h;
-}
-
-/* Distances at the time under way by poles. Where much is sure to cancel, the highest degree begins. */
-static hd_status hdi_distances_by_poles(hdi_task *task) {
-    const hdi_distances *to = (const hdi_distances *)task;
-    const hdi_distance_row *kind = to->of.kind;
-    hdi_heat_call *h = task->h;
-    task->excess = 2;
-    if (kind->expected > 0 && h->degree == 0 && hdi_degree_open(h->heat) &&
-        hdi_distance_sure(h->heat, kind, h->ask.t[h->now])) return HD_OK;
-    (void)hdi_distance_by_metric(&to->of, hdi_low32(to->k, HDI_LANES), 1);
-    task->excess = kind->sure > 0 ? h->rep->error_rational / kind->sure : 0;
-    return h->e->status;
-}
-
-/* Distances at times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static HDI_COLD hd_status hdi_distances_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
-    const hdi_distances *to = (const hdi_distances *)task;
-    hdi_heat_call *h = task->h;
-    const int32_t *column = h->time_column + q0, count = q1 - q0;
-    const int32_t group = hdi_low32(to->k, hdi_high32(1, HDI_LANES / count));
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_metric x;
-    int32_t q;
-    if (hdi_metric_take(&x, h, to->of.kind, count, &s) >= 0 &&
-        hdi_inverses_take(&x.in, h, h->times + q0, count, hdi_metric_wanted(h->heat, to->of.kind),
-                          HDI_SHARED_DISTANCE_TOL, &s) >= 0 &&
-        hdi_metric_invert(&x, &s) >= 0 && hdi_metric_room(&x, group, 1, &s) >= 0) {
-        for (q = 0; q < count; q++) one[column[q]] = *h->rep;
-        (void)hdi_distances_of(to, &x, column, one);
+    const size_t n_times = (size_t)hdi_high32(h->ask.n_times, 1);
+    int32_t r, k, i, q;
+    for (r = 0; r < to->k; r += k) {
+        k = hdi_low32(to->k - r, x->group);
+        if ((x->modes && hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) < 0) ||
+            hdi_metric_solve(x, to->source + r, k) < 0) break;
+        for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
+            const int32_t at = x->column[q];
+            hdi_metric_at(x, q);
+            for (i = 0; i < k; i++)
+                hdi_metric_distance(x, to->source + r + i, i,
+                                    to->D + ((size_t)(r + i) * n_times + (size_t)at) * to->ld,
+                                    x->one ? x->one + at : h->rep);
+        }
     }
-    return hdi_scope_end(&s);
 }
 
 /* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
     const int32_t times = ((const hdi_distances *)task)->of.kind->time;
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+    if (!hdi_degree_open(h->heat) || hdi_heat_analysed(h->heat, h->e) < 0 ||
         hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
-        hdi_heat_equal(heat, &heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
+        hdi_heat_equal(h->heat, &h->heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
         return h->e->status;
-    hdi_inverse_tell(h);
-    return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distances_window, done, one);
+    return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distance_window, done, one);
 }
 
 /* ---- pairs ---- */
@@ -21937,18 +21917,18 @@ typedef struct hdi_pairs {
 typedef struct hdi_pairs_part {
     int64_t begin, end;
     int32_t n_vertex, *place;    /* [n] which of the columns each vertex has, -1: none */
-    double *U, *size;            /* the columns, and their norms of B */
+    double *U, *off;             /* the columns, and their errors in the norm of B */
     double *work;                /* [2 n_active] */
 } hdi_pairs_part;
 
-/* Finds the vertices. */
-static void hdi_pairs_vertices(const hdi_pairs *to, hdi_pairs_part *x, int32_t n) {
-    int64_t q;
-    int32_t v;
-    hdi_fill_i32(x->place, n, -1);
-    for (q = x->begin; q < x->end; q++) x->place[to->i[q]] = x->place[to->j[q]] = 0;
-    for (v = 0, x->n_vertex = 0; v < n; v++)
-        if (x->place[v] == 0) x->place[v] = x->n_vertex++;
+/* Takes pairs from x->begin on, one at least, while their vertices are no more than `most`. */
+static void hdi_pairs_take(const hdi_pairs *to, hdi_pairs_part *x, int64_t most) {
+    hdi_fill_i32(x->place, to->of.task.h->heat->source->n, -1);
+    x->n_vertex = 0;
+    for (x->end = x->begin; x->end < to->n && (x->n_vertex == 0 || x->n_vertex + 2 <= most); x->end++) {
+        if (x->place[to->i[x->end]] < 0) x->place[to->i[x->end]] = x->n_vertex++;
+        if (x->place[to->j[x->end]] < 0) x->place[to->j[x->end]] = x->n_vertex++;
+    }
 }
 
 /* |u - v|_B of fields on vertices, whose squares may overflow; v NULL: |u|_B. work [2 n_active] */
@@ -21959,13 +21939,6 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
     for (r = 0, most = 0; r < lap->n_active; r++) most = hdi_max(most, fabs(work[r]));
     for (r = 0; r < lap->n_active && most > 0; r++) work[r] /= most;
     return most * sqrt(hdi_max(0, hdi_b_norm2(lap, work, work + lap->n_active)));
-}
-
-/* The error of the column of v, whose size is given, in the norm of B: relative errors are below bound. That
- * of a vertex without a row is exact. */
-static double hdi_pairs_column_off(const hd_laplacian *lap, int32_t v, double size, double bound) {
-    if (lap->row[v] < 0) return 0;
-    return size > 0 ? bound * size : hdi_finite(bound) ? 0 : HUGE_VAL;
 }
 
 /* Most doubles of columns that are held at the same time: half a GiB. */
@@ -21980,106 +21953,87 @@ static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_repo
     int64_t q;
     for (q = x->begin; q < x->end; q++) {
         const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
-        hdi_parts part = {0, 0, 0, 0};
         d[q] = 0;
         if (i == j) continue;
         d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
-        part.rounding = hdi_pairs_column_off(lap, to->i[q], x->size[i], rep->error_bound_b) +
-                        hdi_pairs_column_off(lap, to->j[q], x->size[j], rep->error_bound_b) +
-                        4 * DBL_EPSILON * (x->size[i] + x->size[j]);
-        rep->n_lost += d[q] < 10 * part.rounding;
-        if (hdi_finite(part.rounding)) part = hdi_parts_share(rep, part.rounding);
-        hdi_ledger_note(all, d[q], part);
+        rep->n_lost += d[q] < 10 * (x->off[i] + x->off[j]);
+        hdi_ledger_note(all, d[q], hdi_parts_share(rep, x->off[i] + x->off[j]));
     }
 }
 
 /* Some pairs at the time under way from columns. */
 static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_kernel kernel = hdi_distance_kernel(to->of.kind);
-    hdi_heat_call *h = to->of.task.h, c;
+    hdi_heat_call *h = to->of.task.h;
     const hd_laplacian *lap = h->heat->source;
     const uint64_t n = (uint64_t)lap->n;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_terms *terms;
+    hdi_terms *terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
     int32_t v;
-    x->place = HDI_TAKE(&s, int32_t, n);
-    if (!x->place) return hdi_scope_end(&s);
-    hdi_pairs_vertices(to, x, lap->n);
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
-    x->size = HDI_TAKE(&s, double, x->n_vertex);
-    terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
+    x->off = HDI_TAKE(&s, double, x->n_vertex);
     if (h->e->status < 0) return hdi_scope_end(&s);
     for (v = 0; v < lap->n; v++)
         if (x->place[v] >= 0) terms[x->place[v]] = hdi_terms_vertex(v);
-    if (hdi_kernel_begin(&c, h->heat, kernel, rep, NULL) >= 0 &&
-        hdi_times_check(&c, 1, h->ask.t + h->now, 0) >= 0) {
-        c.ask.k = x->n_vertex;
-        c.ask.terms = terms;
-        c.ask.U = x->U;
-        c.ask.ldu = (size_t)n;
-        c.degree = h->degree;
+    (void)hdi_distance_columns(h, to->of.kind, 1, x->n_vertex, terms, x->U, rep);
+    for (v = 0; v < x->n_vertex && h->e->status >= 0; v++) {
+        const double size = hdi_vertex_norm(lap, x->U + n * (uint64_t)v, NULL, x->work);
+        const double off = size > 0 || hdi_finite(rep->error_bound_b) ? size * rep->error_bound_b : HUGE_VAL;
+        /* that of a vertex without a row is exact */
+        x->off[v] = 4 * DBL_EPSILON * size + (lap->row[terms[v].one] < 0 ? 0 : off);
     }
-    if (hdi_heat_run(&c) < 0) *h->e = rep->error;
-    for (v = 0; v < x->n_vertex && h->e->status >= 0; v++)
-        x->size[v] = hdi_vertex_norm(lap, x->U + n * (uint64_t)v, NULL, x->work);
     if (h->e->status >= 0) hdi_pairs_note(to, x, rep, all);
     return hdi_scope_end(&s);
 }
 
-/* All pairs at the time under way, `most` at once. */
-static hd_status hdi_pairs_columns(const hdi_pairs *to, int64_t most) {
+/* All pairs at the time under way, in parts whose columns fit. Returns 0 where there are several of these,
+ * and a metric serves better. */
+static int hdi_pairs_columns(const hdi_pairs *to) {
     hdi_heat_call *h = to->of.task.h;
+    const int64_t most = HDI_PAIRS_DOUBLES / h->heat->source->n;
+    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_ledger all = hdi_ledger_begin(HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, HD_EVIDENCE_NONE, 1);
-    hd_report one, sum;
     hdi_pairs_part x;
-    memset(&sum, 0, sizeof sum);
-    for (x.begin = 0; x.begin < to->n; x.begin = x.end) {
-        x.end = hdi_least(to->n, x.begin + most);
-        if (hdi_pairs_some(to, &x, &one, &all) < 0) return h->e->status;
-        hdi_report_merge(&sum, &one);
+    hd_report one;
+    int fits = 1;
+    x.place = HDI_TAKE(&s, int32_t, h->heat->source->n);
+    for (x.begin = 0; h->e->status >= 0 && fits && x.begin < to->n; x.begin = x.end) {
+        hdi_pairs_take(to, &x, most);
+        fits = x.end - x.begin == to->n || hdi_direct_barred(h->heat);
+        if (fits && hdi_pairs_some(to, &x, &one, &all) >= 0) hdi_report_merge(h->rep, &one);
     }
-    hdi_report_unbound(&sum);
-    *h->rep = sum;
+    if (hdi_scope_end(&s) < 0 || !fits) return fits;
+    hdi_report_unbound(h->rep);
     hdi_ledger_close(&all, h->rep);
-    return h->e->status;
-}
-
-/* A pair from eigenpairs. out [n] */
-static double hdi_pairs_from_sum(hdi_heat_call *h, hdi_mode_sum *sum, int32_t i, int32_t j, double *out,
-                                 hdi_ledger *ledger) {
-    sum->sums.column = out;
-    hdi_mode_sum_from(sum, hdi_terms_vertex(i));
-    hdi_spec_sum_task(&sum->sums, j, (int64_t)j + 1);
-    hdi_mode_sum_note(sum, j, ledger, h->rep);
-    return out[j];
+    return 1;
 }
 
 /* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
  * first vertex has a column, and errors are those of all vertices from these. */
-static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x) {
     const hdi_pairs *to = (const hdi_pairs *)of;
     hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
     const hdi_parts none = {0, 0, 0, 0};
-    hdi_ledger ledger = sum ? hdi_modes_ledger() : hdi_metric_ledger(x), all = ledger;
+    hdi_ledger ledger = hdi_metric_ledger(x), all = ledger;
     int32_t from = -1;
     int64_t q;
     for (q = 0; q < to->n && h->e->status >= 0; q++) {
         const hdi_terms source = hdi_terms_vertex(to->i[q]);
+        const int32_t j = to->j[q];
         out[q] = 0;
-        if (to->i[q] == to->j[q]) continue;
-        if (HDI_HAS_MODES && sum) out[q] = hdi_pairs_from_sum(h, sum, to->i[q], to->j[q], d, &ledger);
-        if (sum) continue;
-        if (to->i[q] != from && hdi_metric_solve(x, &source, 1) >= 0)
-            hdi_metric_distance(x, &source, 0, d, h->rep, &all);
-        from = to->i[q];
-        out[q] = d[to->j[q]];
-        if (hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
+        if (source.one == j) continue;
+        if (HDI_HAS_MODES && x->modes)
+            hdi_mode_sum_run(x->modes, source, j, j + 1, d, &ledger, h->rep);
+        else if (source.one != from && hdi_metric_solve(x, &source, 1) >= 0)
+            hdi_metric_differences(x, &source, 0, d, h->rep, &all);
+        from = source.one;
+        out[q] = d[j];
+        if (!x->modes && hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
     }
-    if (x) ledger.off = all.off;
-    if (x) ledger.relative = all.relative;
+    if (!x->modes) ledger.off = all.off;
+    if (!x->modes) ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     (void)hdi_scope_end(&s);
 }
@@ -22088,34 +22042,14 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
 static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const int64_t room = HDI_PAIRS_DOUBLES / heat->source->n;
-    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
-    hdi_pairs_part all = {0, to->n, 0, NULL, NULL, NULL, NULL};
-    int64_t most = to->n;
-    int fits = to->of.kind->time > 0 && !hdi_heat_filtered(heat);
-    if (fits && 2 * to->n > room) all.place = HDI_TAKE(&s, int32_t, heat->source->n);
-    if (all.place) hdi_pairs_vertices(to, &all, heat->source->n);
-    if (all.n_vertex > room) {
-        fits = hdi_direct_barred(heat);
-        most = hdi_high32(1, (int32_t)(room / 2));
-    }
-    if (hdi_scope_end(&s) < 0) return h->e->status;
-    if (!fits) return hdi_distance_by_metric(&to->of, 1, 0);
-    if (hdi_pairs_columns(to, most) >= 0 && h->rep->method == HD_METHOD_DIRECT)
+    if (!to->of.kind->squares || !(to->of.kind->time > 0) || hdi_heat_filtered(h->heat) ||
+        !hdi_pairs_columns(to)) return hdi_distance_by_poles(task);
+    if (h->e->status >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
 }
 
 /* ---- farthest points ---- */
-
-/* The vertex that is farthest from those chosen, the first one of several. It is never one without mass. */
-static int32_t hdi_sample_next(const hd_laplacian *lap, const double *nearest) {
-    int32_t v, best = -1;
-    for (v = 0; v < lap->n; v++)
-        if (lap->row[v] >= 0 && (best < 0 || nearest[v] > nearest[best])) best = v;
-    return best;
-}
 
 /* A query for farthest points. */
 typedef struct hdi_samples {
@@ -22127,55 +22061,33 @@ typedef struct hdi_samples {
     double *distance, *nearest, *u;
 } hdi_samples;
 
-/* All points, each the one that is farthest from those before it. This function is based on
+/* All points, each the one that is farthest from those before it, the first one of several, and never one
+ * without mass. This function is based on
  *   T. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985 */
-static HDI_COLD void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x, hdi_mode_sum *sum) {
+static HDI_COLD void hdi_sample_answer(const hdi_distance_query *of, hdi_metric *x) {
     const hdi_samples *a = (const hdi_samples *)of;
     hdi_heat_call *h = of->task.h;
     const hd_laplacian *lap = h->heat->source;
-    int32_t *vertex = a->vertex, q, v;
+    int32_t *vertex = a->vertex, next = lap->vertex[0], q, v;
     for (v = 0; v < lap->n; v++) a->nearest[v] = HUGE_VAL;
     for (q = -a->n_from; q < a->count && h->e->status >= 0; q++) {
-        const int first = q == -a->n_from;
         hdi_terms from;
-        if (q >= 0) {
-            vertex[q] = first ? lap->vertex[0] : hdi_sample_next(lap, a->nearest);
-            if (a->distance) a->distance[q] = first ? 0 : hdi_max(0, a->nearest[vertex[q]]);
-        }
+        if (q >= 0) vertex[q] = next;
+        if (q >= 0 && a->distance) a->distance[q] = q == -a->n_from ? 0 : hdi_max(0, a->nearest[next]);
         if (q + 1 == a->count || hdi_progress(h->heat->ctx, "sample", hdi_max(0, q) / a->count, h->e) < 0)
             break;
         from = q < 0 ? a->terms[a->n_from + q] : hdi_terms_vertex(vertex[q]);
-        if (hdi_distances_from(h, x, sum, &from, a->u) < 0) break;
-        for (v = 0; v < lap->n; v++) a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
-        if (!from.weight) a->nearest[from.one] = -1;     /* never again, even when no distance is left */
+        if (hdi_metric_solve(x, &from, 1) < 0) break;
+        hdi_metric_distance(x, &from, 0, a->u, h->rep);
+        if (!from.weight) a->u[from.one] = -1;   /* never again, even when no distance is left */
+        for (v = 0, next = -1; v < lap->n; v++) {
+            a->nearest[v] = hdi_min(a->nearest[v], a->u[v]);
+            if (lap->row[v] >= 0 && (next < 0 || a->nearest[v] > a->nearest[next])) next = v;
+        }
     }
 }
 
-/* The points by distances from poles. */
-static hd_status hdi_sample_by_poles(hdi_task *task) {
-    const hdi_distance_query *of = (const hdi_distance_query *)task;
-    hdi_heat_call *h = task->h;
-    h->degree = of->kind->time > 0 && hdi_degree_open(h->heat) ? HDI_RAT_KERNEL_MAX : 0;
-    (void)hdi_distance_by_metric(of, 1, 0);
-    h->degree = 0;
-    return h->e->status;
-}
-
 /* ---- queries of distances ---- */
-
-/* Sets up a query from k sources that eigenpairs may serve: how far these have to reach is given by
- * exp(depth) = |y| over the part that may be left out. The largest distance is at least about
- * 1/sqrt(mass) times exp(-t low). */
-static void hdi_distance_task(hdi_task *task, hdi_heat_call *h, const hdi_distance_row *kind, int32_t k) {
-    const double span = hdi_modes_span(h->heat);
-    const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
-    memset(task, 0, sizeof *task);
-    task->h = h;
-    task->pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
-    if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
-    task->serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
-    task->depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
-}
 
 /* The start of a query of a distance. Without a time n_times is 0 or 1, and t is not read. */
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
@@ -22189,8 +22101,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    if (kind->time > 0 && (pairs ? !hdi_heat_filtered(heat) : !heat->opts.rational && hdi_patches_can(heat)))
-        return HD_OK;
+    if (kind->time > 0 && (pairs ? kind->squares && !hdi_heat_filtered(heat)
+                                 : !heat->opts.rational && hdi_patches_can(heat))) return HD_OK;
     return hdi_direct_only(h);
 }
 
@@ -22205,9 +22117,8 @@ static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_so
     if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
     to->k = h.e->status >= 0 ? sources->count : 0;
     if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->of.task, &h, to->of.kind, to->k);
+    hdi_distance_task(&to->of, &h, to->k);
     to->of.answer = hdi_distances_answer;
-    to->of.task.poles = hdi_distances_by_poles;
     to->of.task.together = hdi_distances_together;
     (void)hdi_distance_answer(&to->of);
     return hdi_heat_end(&h);
@@ -22215,7 +22126,7 @@ static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_so
 
 /* Runs a query for pairs whose arguments are checked. */
 static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->of.task, h, to->of.kind, 1);
+    hdi_distance_task(&to->of, h, 1);
     to->of.answer = hdi_pairs_answer;
     to->of.task.poles = hdi_pairs_by_poles;
     return hdi_heat_sparing(h, &to->of.task);
@@ -22234,9 +22145,9 @@ static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources 
     a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
     a->u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->of.task, &h, a->of.kind, a->count + a->n_from);
+    hdi_distance_task(&a->of, &h, a->count + a->n_from);
     a->of.answer = hdi_sample_answer;
-    a->of.task.poles = hdi_sample_by_poles;
+    a->of.group = a->of.highest = 1;
     (void)hdi_distance_answer(&a->of);
     return hdi_heat_end(&h);
 }
@@ -22246,56 +22157,63 @@ static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources 
  * bytes with what is allocated. */
 
 /* How a query is answered: by solves, by an inversion, from L grounded, or from eigenpairs. */
-typedef enum hdi_by { HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM } hdi_by;
-
-typedef struct hdi_query_row {
-    hd_query query;
-    hdi_by by;
-    int32_t columns;             /* k counts columns that are solved for, or pairs that are found */
-    int32_t mass;                /* K_t is asked for, not k_t */
-    const hdi_distance_row *distance;   /* its kind, or NULL */
-} hdi_query_row;
-
-static const hdi_query_row hdi_query_rows[] = {
-    {HD_QUERY_FIELDS, HDI_BY_SOLVES, 1, 0, NULL},
-    {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 1, 0, NULL},
-    {HD_QUERY_PAIRS, HDI_BY_SOLVES, 1, 0, hdi_distance_rows},
-    {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0, 0, NULL},
-    {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 0, 1, NULL},
-    {HD_QUERY_TRACE, HDI_BY_INVERSION, 0, 2, NULL},     /* perhaps with either diagonal */
-    {HD_QUERY_DISTANCE, HDI_BY_INVERSION, 1, 0, hdi_distance_rows},
-    {HD_QUERY_DISTANCE_WEIGHTED, HDI_BY_INVERSION, 1, 0, hdi_distance_rows + 1},
-    {HD_QUERY_DISTANCE_COMMUTE, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 2},
-    {HD_QUERY_DISTANCE_BIHARMONIC, HDI_BY_GROUND, 1, 0, hdi_distance_rows + 3},
-    {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 1, 0, NULL}
-};
-
-/* NULL: there is no such query. */
-static const hdi_query_row *hdi_query_of(hd_query query) {
-    size_t q;
-    for (q = 0; q < sizeof hdi_query_rows / sizeof *hdi_query_rows; q++)
-        if (hdi_query_rows[q].query == query) return hdi_query_rows + q;
-    return NULL;
-}
+typedef enum hdi_by {
+    HDI_BY_NOTHING, HDI_BY_SOLVES, HDI_BY_INVERSION, HDI_BY_GROUND, HDI_BY_SPECTRUM
+} hdi_by;
 
 /* A query under estimation. */
 typedef struct hdi_estimate {
-    hdi_heat_call *h;
-    const hdi_query_row *query;
+    hdi_distance_query of;       /* for eigenpairs; kind: NULL but for distances */
+    hdi_by by;
+    int32_t mass;                /* K_t is asked for, not k_t */
     hd_estimate *to;
-    double unit;                 /* the call's times are the caller's times this */
     double held;                 /* bytes of arrays that the query takes first, and of small ones */
-    hdi_task task;               /* for eigenpairs */
 } hdi_estimate;
 
 /* Bytes of small arrays that are not listed one by one. */
 #define HDI_ESTIMATE_SMALL 4096
 
+/* Finds what is known of a query. Those for distances are in hdi_distance_rows. */
+static void hdi_estimate_find(hdi_estimate *x, hd_query query) {
+    static const struct { hd_query query; hdi_by by; int32_t mass; } rows[] = {
+        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 0},
+        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 0},
+        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 0},
+        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0},
+        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 1},
+        {HD_QUERY_TRACE, HDI_BY_INVERSION, 2},   /* perhaps with either diagonal */
+        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 0}
+    };
+    size_t q;
+    for (q = 0; q < sizeof rows / sizeof *rows; q++) {
+        if (rows[q].query != query) continue;
+        x->by = rows[q].by;
+        x->mass = rows[q].mass;
+    }
+    if (query == HD_QUERY_PAIRS) x->of.kind = hdi_distance_of(HD_DISTANCE_CLASSICAL);
+    for (q = 0; q < HDI_DISTANCES; q++) {
+        if (hdi_distance_rows[q].query != query) continue;
+        x->of.kind = hdi_distance_rows + q;
+        x->by = x->of.kind->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
+    }
+}
+
+/* Checks the query, and its times if it has some. */
+static hd_status hdi_estimate_check(hdi_heat_call *h, hdi_by by, int32_t n_times, const double *t,
+                                    int32_t k) {
+    if (by == HDI_BY_NOTHING) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
+    if (k < 0)
+        return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
+    if (by == HDI_BY_SPECTRUM) return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
+    if (by == HDI_BY_GROUND) return hdi_direct_only(h);
+    if (by == HDI_BY_INVERSION && hdi_diagonal_check(h) < 0) return h->e->status;
+    return hdi_times_check(h, n_times, t, by == HDI_BY_INVERSION);
+}
+
 /* Analyses the pattern for a query that needs a factorisation. If there is no memory for that within the byte
  * limit, figures are guesses. */
 static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
-    const hd_context *ctx = h->heat->ctx;
-    if (hdi_heat_analysed_in(h->heat, hdi_heat_analysis(h), h->e) < 0 && hdi_over_limit(ctx, h->e))
+    if (hdi_heat_analysed_in(h->heat, hdi_heat_analysis(h), h->e) < 0 && hdi_over_limit(h->heat->ctx, h->e))
         hdi_error_clear(h->e);
     if (h->heat->elim.ctx) h->lap = h->heat->elim.lap;
     return h->e->status;
@@ -22303,40 +22221,41 @@ static hd_status hdi_estimate_analyse(hdi_heat_call *h) {
 
 /* Solves, or an inversion for `count` times that share a set, with what is made of it. */
 static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int32_t count, hd_cost *c) {
-    const hd_laplacian *lap = x->h->heat->source;
-    const hdi_distance_row *kind = x->query->distance;
-    const int32_t k = x->h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
-    const int forms = kind && kind->mass > 0 && lap->B;
+    const hdi_heat_call *h = x->of.task.h;
+    const hd_laplacian *lap = h->heat->source;
+    const hdi_distance_row *kind = x->of.kind;
+    const int32_t k = h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
+    const int forms = kind && hdi_metric_wanted(h->heat, kind) == HDI_WANT_FORMS;
     const double n = lap->n_active, entries = (double)(lap->L.nnz + lap->n_active) / 2;
     double doubles = 6 * n + count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
-    if (x->query->by == HDI_BY_SOLVES) {
-        hdi_direct_set(x->h, set, HDI_AFTER_BOUND, 0, k, x->held, c);
+    if (x->by == HDI_BY_SOLVES) {
+        hdi_direct_set(h, set, HDI_AFTER_BOUND, 0, k, x->held, c);
         return;
     }
     /* the values, and a diagonal */
-    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->query->mass && lap->B ? entries : n);
+    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->mass && lap->B ? entries : n);
     if (kind)                                    /* a metric, and columns of its bound or at all times */
         doubles += 12 * n + 3.0 * lap->n + 6.0 * k + (count > 1 ? 2.0 * count : hdi_min(k, HDI_LANES)) * n;
-    hdi_direct_set(x->h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
+    hdi_direct_set(h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
 }
 
 /* Bytes where the highest degree takes over; the lanes and real factor of an inversion before it stay. */
 static double hdi_estimate_most(const hdi_estimate *x) {
-    const hdi_heat_call *h = x->h;
+    const hdi_heat_call *h = x->of.task.h;
     const hdi_elim *m = &h->heat->elim;
     hd_cost c;
     hd_rational set;
     memset(&c, 0, sizeof c);
     if (hdi_heat_set_of(h, HDI_RAT_KERNEL_MAX, &set) < 0) return 0;
     hdi_estimate_set(x, &set, 1, &c);
-    if (!m->ctx || (x->query->by == HDI_BY_SOLVES && !x->query->distance)) return c.bytes;
+    if (!m->ctx || (x->by == HDI_BY_SOLVES && !x->of.kind)) return c.bytes;
     return c.bytes + (double)hdi_batches_need(h->heat, 1, hdi_high32(h->ask.k, HDI_PROBES)) +
            (m->real.ctx ? 0 : (double)hdi_factor_bytes(&m->sym, 1));
 }
 
 /* Fields, columns and entries: all methods, of which the run picks one. */
 static hd_status hdi_estimate_solves(const hdi_estimate *x) {
-    hdi_heat_call *h = x->h;
+    hdi_heat_call *h = x->of.task.h;
     hd_cost *by = x->to->cost;
     int32_t q;
     if (hdi_heat_pick(h) < 0 && hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
@@ -22346,68 +22265,52 @@ static hd_status hdi_estimate_solves(const hdi_estimate *x) {
     x->to->reason = h->rep->reason;
     hdi_heat_costs(h, by);
     for (q = HD_METHOD_ITERATIVE; q <= HD_METHOD_LOCAL; q++) {
-        if (by[q].possible) by[q].bytes += x->held;
-        by[q].bytes_most = by[q].bytes;
+        if (!by[q].possible) continue;
+        by[q].bytes += x->held;
+        by[q].bytes_most = q == HD_METHOD_DIRECT ? hdi_max(by[q].bytes, hdi_estimate_most(x)) : by[q].bytes;
     }
-    if (by[HD_METHOD_DIRECT].possible)
-        by[HD_METHOD_DIRECT].bytes_most = hdi_max(by[HD_METHOD_DIRECT].bytes, hdi_estimate_most(x));
     return h->e->status;
 }
 
-/* The times of the call by poles that they share, in windows. Returns 0 if they share none. */
-static int hdi_estimate_shared(const hdi_estimate *x, hd_cost *c) {
-    hdi_heat_call *h = x->h;
-    const double tol = x->query->distance ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL;
-    const int can = h->n_times > 1 && hdi_degree_open(h->heat) &&
-                    !(x->query->mass == 1 && h->heat->source->B);
-    const int32_t windows = can ? hdi_shared_windows(h->times, h->n_times, tol) : 0;
-    int32_t w, q0, q1;
-    for (w = 0, q0 = 0; windows > 0 && q0 < h->n_times; w++, q0 = q1) {
-        hd_rational set;
-        memset(&set, 0, sizeof set);
-        q1 = hdi_window_end(h->times, h->n_times, q0, w, windows);
-        (void)hdi_shared_pick(&set, h->times[q1 - 1] / h->times[q0] * (1 + 1e-12), tol);
-        hdi_estimate_set(x, &set, q1 - q0, c);
-    }
-    return windows > 0 && c->bytes <= hdi_bytes_left(h->heat->ctx);
-}
-
 /* Diagonals, traces and distances by poles: the first `early` times together if the run does so, else all one
- * by one, each as the last time. Bytes are enough for both, since the run may fall back to the latter. */
+ * by one, each as the last time. Bytes are enough for both, since the run may fall back to the latter. Each
+ * window of shared poles counts as one with all these times. */
 static void hdi_estimate_inverses(const hdi_estimate *x, int32_t early, hd_cost *c) {
-    hdi_heat_call *h = x->h;
-    const hdi_distance_row *kind = x->query->distance;
-    const int32_t n_times = h->n_times;
-    double most;
-    hd_cost one;
+    hdi_heat_call *h = x->of.task.h;
+    const hdi_distance_row *kind = x->of.kind;
+    const double tol = kind ? HDI_SHARED_DISTANCE_TOL : HDI_SHARED_TOL, left = hdi_bytes_left(h->heat->ctx);
+    const int open = hdi_degree_open(h->heat);
+    const int share = early > 1 && open && !(x->mass == 1 && h->heat->source->B);
+    const int32_t windows = share ? hdi_shared_windows(h->times, early, tol) : 0;
+    double most, times = h->n_times;
+    hd_cost shared;
     hd_rational set;
-    memset(&one, 0, sizeof one);
     h->method = HD_METHOD_DIRECT;
     most = hdi_estimate_most(x);
-    if (kind && hdi_degree_open(h->heat) && hdi_distance_sure(h->heat, kind, h->t / x->unit) &&
-        most <= hdi_bytes_left(h->heat->ctx)) h->degree = HDI_RAT_KERNEL_MAX;
-    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, &one);
+    if (kind && kind->highest && open && most <= left) h->degree = HDI_RAT_KERNEL_MAX;
+    if (hdi_heat_set(h, &set) >= 0) hdi_estimate_set(x, &set, 1, c);
     h->degree = 0;
-    if (early > 0) h->n_times = early;
-    if (!hdi_estimate_shared(x, c)) {
-        *c = one;
-        h->n_times = 1;
+    memset(&shared, 0, sizeof shared);
+    if (windows > 0 &&
+        hdi_shared_pick(&set, pow(h->times[early - 1] / h->times[0], 1.0 / windows) * (1 + 1e-12), tol))
+        hdi_estimate_set(x, &set, early, &shared);
+    if (shared.possible && shared.bytes <= left) {
+        shared.bytes = hdi_max(shared.bytes, c->bytes);
+        *c = shared;
+        times *= (double)windows / early;
     }
-    c->flops *= (double)n_times / h->n_times;
-    c->seconds *= (double)n_times / h->n_times;
-    h->n_times = n_times;
-    c->possible = 1;
-    c->bytes = hdi_max(c->bytes, one.bytes);
+    c->flops *= times;
+    c->seconds *= times;
     c->bytes_most = hdi_max(c->bytes, most);
     c->seconds += HDI_FRESH_BYTE * c->bytes;
 }
 
 /* Commute and biharmonic distances. */
 static void hdi_estimate_ground(const hdi_estimate *x, hd_cost *c) {
-    hd_heat *heat = x->h->heat;
-    const int forms = x->query->distance->power > 1;
+    hd_heat *heat = x->of.task.h->heat;
+    const int forms = x->of.kind->power > 1;
     const hdi_fill f = hdi_heat_fill(heat, &heat->elim);
-    const double k = x->h->ask.k;
+    const double k = x->of.task.h->ask.k;
     c->possible = 1;
     hdi_fill_cost(f, 1, 1 + HDI_INVERT, (k + (double)HDI_PROBES) * (forms ? 4 : 2), 0, c);
     hdi_fill_cost(f, HDI_PACK, forms ? 1 + HDI_INVERT : 0, 0, 0, c);
@@ -22439,16 +22342,22 @@ static void hdi_estimate_pairs(const hd_heat *heat, int32_t count, hd_cost *c) {
     c->bytes_most = HDI_MODES_OVER * c->bytes;
 }
 
-/* How many are asked for at time q of the call. */
+/* Time q of the call, of those that are sorted. */
+static double hdi_estimate_time(const hdi_estimate *x, int32_t q) {
+    const hdi_heat_call *h = x->of.task.h;
+    return h->ask.t[h->time_column[q]];
+}
+
+/* How many are asked for there. */
 static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
-    const hd_heat *heat = x->h->heat;
-    return hdi_modes_count(heat, hdi_modes_expected(heat, x->task.depth * x->unit / x->h->times[q]));
+    const hd_heat *heat = x->of.task.h->heat;
+    return hdi_modes_count(heat, hdi_modes_expected(heat, x->of.task.depth / hdi_estimate_time(x, q)));
 }
 
 /* The most that eigenpairs for time q take while they are found, times over, and then beside other bytes. */
 static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over, double bytes) {
-    const hd_heat *heat = x->h->heat;
-    const hdi_distance_row *kind = x->query->distance;
+    const hd_heat *heat = x->of.task.h->heat;
+    const hdi_distance_row *kind = x->of.kind;
     const int32_t count = hdi_estimate_count(x, q);
     const double vectors = (kind && kind->mass > 0 && heat->source->B ? 2.0 : 1.0) * count + 5;
     return hdi_max(bytes + 8 * vectors * heat->source->n,
@@ -22459,9 +22368,9 @@ static double hdi_estimate_beside(const hdi_estimate *x, int32_t q, double over,
 
 /* The same query by patches, each for all times, and whether the run takes them. */
 static hd_status hdi_estimate_patches(const hdi_estimate *x) {
-    hdi_heat_call *h = x->h;
+    hdi_heat_call *h = x->of.task.h;
     hd_heat *heat = h->heat;
-    const hdi_distance_row *kind = x->query->distance;
+    const hdi_distance_row *kind = x->of.kind;
     const double tol = heat->opts.tol, factor = kind ? kind->time : 1;
     hd_cost *c = x->to->cost + HD_METHOD_LOCAL;
     hdi_diagonals to;
@@ -22469,7 +22378,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hd_rational set;
     double pieces;
     int pays;
-    if (!hdi_patches_can(heat) || factor == 0 || (kind && heat->opts.rational)) return h->e->status;
+    if (!hdi_patches_can(heat) || (kind && heat->opts.rational)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);
@@ -22495,15 +22404,15 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
  * take about as long as poles, once; then poles do the other times, or all if there is no room for pairs.
  * From time `some` on they may help. */
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
-    hdi_heat_call *h = x->h;
+    hdi_heat_call *h = x->of.task.h;
     const hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times, inverses = x->query->by == HDI_BY_INVERSION;
+    const int32_t n_times = h->n_times, inverses = x->by == HDI_BY_INVERSION;
     hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
     int32_t some = 0, few = n_times;
-    while (few > 0 && hdi_task_near(&x->task, h->times[few - 1] / x->unit, x->task.serves)) few--;
-    while (some < few && !hdi_task_near(&x->task, h->times[some] / x->unit, HDI_MODES_MOST)) some++;
+    while (few > 0 && hdi_task_near(&x->of.task, hdi_estimate_time(x, few - 1), x->of.task.serves)) few--;
+    while (some < few && !hdi_task_near(&x->of.task, hdi_estimate_time(x, some), HDI_MODES_MOST)) some++;
     if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
-    if (inverses) hdi_estimate_inverses(x, few, c);
+    if (inverses) hdi_estimate_inverses(x, few > 0 ? few : n_times, c);
     else (void)hdi_estimate_solves(x);
     if (few == 0 && hdi_modes_need(heat, hdi_estimate_count(x, 0)) <= hdi_bytes_left(heat->ctx)) {
         x->to->method = HD_METHOD_DIRECT;
@@ -22519,41 +22428,38 @@ static hd_status hdi_estimate_times(const hdi_estimate *x) {
     return h->e->status;
 }
 
-/* The estimate of a query whose arguments are checked. */
-static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, const hdi_query_row *query, int32_t k,
-                                           hd_estimate *to) {
-    const hd_heat *heat = h->heat;
-    const int pairs = query->query == HD_QUERY_PAIRS;
-    const int32_t times = query->distance && !pairs ? query->distance->time : 1;
-    const double n = heat->source->n;
+/* The estimate of a query. */
+static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int32_t n_times, const double *t,
+                                           int32_t k, hd_estimate *to) {
+    const int pairs = query == HD_QUERY_PAIRS;
+    const double n = h->heat->source->n;
     hd_cost *c = to->cost + HD_METHOD_DIRECT;
     hdi_estimate x;
     memset(&x, 0, sizeof x);
-    x.h = h;
-    x.query = query;
+    hdi_estimate_find(&x, query);
+    if (hdi_estimate_check(h, x.by, n_times, t, k) < 0) return h->e->status;
     x.to = to;
     x.held = HDI_ESTIMATE_SMALL;
-    h->ask.k = query->columns ? hdi_high32(k, 1) : 0;
+    h->ask.k = x.by == HDI_BY_INVERSION && !x.of.kind ? 0 : hdi_high32(k, 1);
+    if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
     to->method = h->method = HD_METHOD_DIRECT;
-    to->reason = query->by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
-    if (query->by >= HDI_BY_GROUND) {
+    to->reason = x.by == HDI_BY_SPECTRUM ? "eigenpairs take real factors" : HDI_DIRECT_REASON;
+    if (x.of.kind) hdi_distance_task(&x.of, h, pairs ? 1 : h->ask.k);
+    else hdi_fading_task(&x.of.task, h);
+    if (x.by >= HDI_BY_GROUND) {
         if (hdi_estimate_analyse(h) < 0) return h->e->status;
-        if (query->by == HDI_BY_GROUND) hdi_estimate_ground(&x, c);
-        else hdi_estimate_pairs(heat, hdi_low32(h->ask.k, heat->source->n_active), c);
+        if (x.by == HDI_BY_GROUND) hdi_estimate_ground(&x, c);
+        else hdi_estimate_pairs(h->heat, hdi_low32(h->ask.k, h->heat->source->n_active), c);
         return HD_OK;
     }
-    x.unit = times * heat->scale;
-    if (query->distance) hdi_distance_task(&x.task, h, query->distance, pairs ? 1 : h->ask.k);
-    else hdi_fading_task(&x.task, h);
-    if (hdi_heat_sort_times(h, times, NULL) < 0) return h->e->status;
-    for (; h->n_times > 1 && h->times[0] == 0; h->n_times--) h->times++;
-    if (pairs) x.held += 8 * hdi_min(n * h->ask.k, (double)HDI_PAIRS_DOUBLES) + 40.0 * h->ask.k + 20 * n;
-    if (query->by == HDI_BY_INVERSION) {
-        if (heat->opts.method != HD_METHOD_LOCAL && hdi_estimate_times(&x) < 0) return h->e->status;
+    if (hdi_heat_sort_times(h, x.of.kind && !pairs ? x.of.kind->time : 1, NULL) < 0) return h->e->status;
+    for (; h->n_times > 1 && h->times[0] == 0; h->n_times--, h->times++) h->time_column++;
+    if (x.by == HDI_BY_INVERSION) {
+        if (h->heat->opts.method != HD_METHOD_LOCAL && hdi_estimate_times(&x) < 0) return h->e->status;
         return hdi_estimate_patches(&x);
     }
     if (h->t > 0) return hdi_estimate_times(&x);
-    to->method = heat->opts.method ? heat->opts.method : HD_METHOD_ITERATIVE;
+    to->method = h->heat->opts.method ? h->heat->opts.method : HD_METHOD_ITERATIVE;
     to->reason = "t = 0";
     c = to->cost + to->method;
     c->possible = 1;
@@ -22570,20 +22476,6 @@ static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
     to->cost[HD_METHOD_AUTO] = to->cost[to->method];
     for (q = 0; q <= HD_METHOD_LOCAL; q++)
         to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
-}
-
-/* Checks the query, and its times if it has some. */
-static hd_status hdi_estimate_check(hdi_heat_call *h, const hdi_query_row *query, int32_t n_times,
-                                    const double *t, int32_t k) {
-    if (!query) return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: unknown query");
-    if (k < 0)
-        return hdi_fail(h->e, HD_ERR_ARGUMENT, "estimate: a number of fields or columns is negative");
-    if (query->by == HDI_BY_SPECTRUM)
-        return HDI_HAS_SPECTRUM ? HD_OK : HDI_LEFT_OUT(h->e, SPECTRUM, "eigenpairs");
-    if (query->by == HDI_BY_INVERSION) (void)hdi_diagonal_check(h);
-    if (query->by == HDI_BY_GROUND) (void)hdi_direct_only(h);
-    if (h->e->status < 0) return h->e->status;
-    return query->by == HDI_BY_GROUND ? HD_OK : hdi_times_check(h, n_times, t, query->by != HDI_BY_SOLVES);
 }
 
 /* ==== [29] geodesic ====
@@ -24268,14 +24160,13 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
     const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
-    const hdi_query_row *row = hdi_query_of(query);
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
     memset(&found, 0, sizeof found);
     if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
     if (!estimate) hdi_missing(h.e);
-    else if (hdi_estimate_check(&h, row, n_times, t, k) >= 0) (void)hdi_estimate_run(&h, row, k, &found);
+    else (void)hdi_estimate_run(&h, query, n_times, t, k, &found);
     status = hdi_heat_end(&h);
     if (status < 0) return status;
     hdi_estimate_close(heat, &found);
