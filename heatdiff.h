@@ -23128,8 +23128,8 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
     return own->e->status < 0 ? own->e->status : hdi_geo_masses(g, lap, g->mass, own->e);
 }
 
-/* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination order,
- * replaced by those of the identity. */
+/* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
+ * order, replaced by those of the identity. */
 static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int heat, const char *away,
                            double *val) {
     int64_t p;
@@ -23202,31 +23202,71 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
     return hdi_geo_coincident(g, in->mesh.xyz, own->e);
 }
 
-static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
-                              const hd_geodesic_opts *o, hd_error *e) {
+#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
+
+/* Checks the options, and resolves into in what they say about the faces. Returns the option neighbours. */
+static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in, hd_error *e) {
+    const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
+    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
+                     o->t_in_h2, e);
+    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
+               "geodesic: unknown mass", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
+    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
+               "geodesic: unknown border", e);
+    hdi_intrinsic_opts(o->triangulation, o->mollify, in, e);
+    in->updatable = o->updatable;
+    in->split = poly && in->flips;
+    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
+               "geodesic: stiffening is not between 0 and 1e100", e);
+    hdi_refuse(o->stiffening != 0 && (!poly || in->flips),
+               "geodesic: stiffening is for polygons that are not split", e);
+    hdi_refuse(points && o->triangulation != HD_TRIANGULATION_TUFTED,
+               "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
+    hdi_refuse(points && o->border != HD_GEODESIC_BORDER_NATURAL,
+               "geodesic: points cannot tell their border", e);
+    hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
+               "geodesic: Voronoi areas are of triangles, not of polygons", e);
+    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
+    hdi_refuse(o->updatable && (in->flips || poly),
+               "geodesic: only plans of triangles in space are updatable", e);
+    return hdi_point_neighbours(o->neighbours, m, e);
+}
+
+/* Fills the plan of a mesh. */
+static hd_status hdi_geo_make(hd_geodesic *g, const hd_mesh *mesh, const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), *own = hdi_geo_keep(g, e);
-    hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
     const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
+    hd_laplacian *lap;
+    hdi_input in;
     hdi_surface z;
+    int32_t neighbours;
+    memset(&in, 0, sizeof in);
+    neighbours = hdi_geo_check(o, mesh, &in, e);
+    if (e->status < 0 || (perm && hdi_order_check(perm, mesh->n, g->ctx, e) < 0) ||
+        hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) < 0)
+        return hdi_scope_end(&s);
+    lap = hdi_lap_shell(g->ctx, e);
     if (!lap) return hdi_scope_end(&s);
-    lap->n = g->n;
+    g->n = lap->n = mesh->n;
     /* the row sums of fem are the lumped mass */
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     lap->points.neighbours = neighbours;
     g->border = o->border;
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
+    if (o->updatable) g->lap = lap;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
-        hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, in, &s) >= 0) {
-        if (in->points) lap->h = z.unit;       /* the mean edge, as on meshes */
+        hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, &in, &s) >= 0) {
+        if (in.points) lap->h = z.unit;          /* the mean edge, as on meshes */
         g->n_active = lap->n_active;
         g->copies = z.parts > 0 ? z.parts : 1;
-        if (o->updatable) g->lap = lap;
-        if (e->status >= 0) (void)hdi_lap_components(lap, e);
+        (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
-        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
+        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, &in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         g->ready = hdi_geo_factors(g, lap, e) >= 0;
     }
@@ -23268,7 +23308,7 @@ typedef struct hdi_geo_item {
 typedef struct hdi_geo_source {
     hdi_geo_item *item;          /* [n] */
     int32_t n, curve;
-    double *near_by;             /* [n_active] where it is known, the distance in units of h; NULL: a vertex */
+    double *near_by;             /* [n_active] known distances in units of h, else HUGE_VAL; or NULL */
     char *home;                  /* [n_faces] 1: an item lies in the face; NULL: all items are vertices */
     double *first;               /* [n_active] u of the first stage; NULL: one item, or a curve */
     double *d;                   /* [n] the column */
@@ -23302,8 +23342,8 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
  * where no |u| reaches least, or where the slope is within rounding: where fronts of symmetric meshes meet,
  * rounding would choose a side. u is normalised by its largest modulus on the face before anything is
  * squared. Faces with a corner that is marked in done are left out. In the home faces of s, or NULL, X is the
- * gradient of the known distances. dim becomes the largest |u| of the faces below least. Loops over columns are written so that compilers make vectors of them: without branches, and
- * with one array that is changed. */
+ * gradient of the known distances. dim becomes the largest |u| of the faces below least. Loops over columns
+ * are written so that compilers make vectors of them: without branches, with one array that is changed. */
 static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, const int k, const double *HDI_RESTRICT u,
                                     const double *least, const char *done, const hdi_geo_source *s,
                                     double *HDI_RESTRICT b, double *dim) {
@@ -23416,8 +23456,8 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
-/* x = the inverse of a factor times x in k columns. Of heat x is not zero in the fronts g->active only, and it is asked
- * for in those wanted; NULL: in all. */
+/* x = the inverse of a factor times x in k columns. Of heat x is not zero in the fronts g->active only, and
+ * it is asked for in those wanted; NULL: in all. */
 static void hdi_geo_sweep(const hd_geodesic *g, int which, int k, double *x, const char *wanted) {
     hdi_sweep z = hdi_sweep_open(g->factor + which, k, x, k == 1 ? g->work : g->wide_work);
     z.active = which == HDI_GEO_POISSON ? NULL : g->active;
@@ -23461,11 +23501,11 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
  * A stage goes down to the fronts only that have rows beyond. */
 
 /* g->x = f, where u was, of which |u| >= least is known now: g->mark. What was known before has no neighbours
- * beyond. f [2 n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
+ * beyond. f [n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
  * there is no usable number along the border. */
 static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted) {
-    const size_t n = (size_t)g->n_active;
-    double *x = g->x, *from_known = f, *from_beyond = f + n, most = 0;
+    const size_t size = (size_t)g->n_active * sizeof *f;
+    double *x = g->x, most = 0;
     int32_t i;
     for (i = 0; i < g->n_active; i++) {
         const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
@@ -23473,11 +23513,12 @@ static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted)
         if (beyond || g->mark[i]) x[i] = 0;
         g->mark[i] = (char)!beyond;
     }
-    memset(f, 0, 2 * n * sizeof *f);
-    hdi_geo_subtract(g, x, from_known);
-    hdi_geo_subtract(g, g->r, from_beyond);
+    memset(f, 0, size);
+    hdi_geo_subtract(g, x, f);
+    memset(x, 0, size);
+    hdi_geo_subtract(g, g->r, x);
     for (i = 0; i < g->n_active; i++) {
-        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -from_beyond[i] : from_known[i];
+        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -x[i] : f[i];
         most = hdi_max(most, fabs(x[i]));
     }
     memset(g->active, 0, (size_t)g->sym.n_super);
@@ -23494,7 +23535,7 @@ static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted)
  * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    double *f = HDI_TAKE(&s, double, 2 * (uint64_t)g->n_active), most;
+    double *f = HDI_TAKE(&s, double, g->n_active), most;
     char *wanted = HDI_TAKE(&s, char, g->sym.n_super);
     int32_t i, faint = e->status >= 0;
     memset(g->mark, 0, (size_t)g->n_active);
@@ -23534,12 +23575,8 @@ static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_i
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
         if (row < 0) continue;
         if (k == 3) return 0;
-        if (k == x->n) {
-            x->a[k] = x->b[k] = 0;
-            x->row[x->n++] = row;
-        }
-        if (!end) x->a[k] += w;
-        else x->b[k] += w;
+        if (k == x->n) x->row[x->n++] = row;
+        *((end ? x->b : x->a) + k) += w;
     }
     return none == 0 || (parts == 1 && !s->curve);
 }
@@ -23593,8 +23630,8 @@ static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, h
                 if (hdi_geo_item_in(z->item + i, g->face + f, z->near_by)) z->home[f] = 1;
     for (i = 0; i < z->n; i++) {
         if (z->item[i].length < 0)
-            return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a point of the source, or a piece of its "
-                                   "curve, lies in no face", i, -1, 0);
+            return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a point of the source, or a piece of "
+                                   "its curve, lies in no face", i, -1, 0);
         length += z->item[i].length;
     }
     if (z->curve && !(length > 0))
@@ -23728,8 +23765,8 @@ static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t 
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
-/* phi is not the same at all points of a source. With u the heat of the source and v that of the values of phi
- * at its points, v/u is near each of them the value of phi there, since heat fades so fast. Distances are
+/* phi is not the same at all points of a source. With u the heat of the source and v that of the values of
+ * phi at its points, v/u is near each of them the value of phi there, since heat fades so fast. Distances are
  * measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and
  * g->r are overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
@@ -23771,27 +23808,28 @@ static double hdi_geo_least(const hdi_geo_source *s, int k, const double *u) {
 }
 
 /* The distances of n columns, side by side if there are several: up to a batch. Of a batch the columns whose
- * heat fades are left out, and are bits of *faint. */
-static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t n, int *faint,
-                               hd_geodesic_report *rep, hd_error *e) {
+ * heat fades are computed again alone. */
+static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
+                               hd_error *e) {
     const int k = n > 1 ? HDI_GEO_WIDE : 1;
     const size_t size = (size_t)k * (size_t)g->n_active * sizeof(double);
     double *x = n > 1 ? g->wide_x : g->x, *b = n > 1 ? g->wide_b : g->b;
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, n_stages = 1;
+    int faint;
     hdi_geo_heat(g, s, n, k, NULL, x, b, rep ? heat : NULL);
     for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(s + c, k, x + c) : DBL_MIN;
     if (s->first) memcpy(s->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s->home ? s : NULL, b);
-    if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
+    faint = hdi_geo_divergence(g, k, x, least, NULL, s->home ? s : NULL, b);
+    if (n == 1 && faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
         memset(b + k * (int64_t)g->pin[c], 0, (size_t)k * sizeof *b);
     hdi_geo_sweep(g, HDI_GEO_POISSON, k, b, NULL);
     for (c = 0; c < n && rep; c++) {
         double *rhs = k > 1 ? g->r : g->x, distance;
-        if (k > 1 && *faint >> c & 1) continue;
+        if (k > 1 && faint >> c & 1) continue;
         (void)hdi_geo_column(g, k, x, c, rhs);
         distance = hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs);
         rep->residual_heat = hdi_max(rep->residual_heat, heat[c]);
@@ -23799,25 +23837,21 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
         rep->n_stages = hdi_high32(rep->n_stages, n_stages);
         if (!(heat[c] <= HDI_GEO_RESIDUAL && distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
     }
-    return hdi_geo_answer(g, s, n, least[0], e);
+    (void)hdi_geo_answer(g, s, n, least[0], e);
+    for (c = 0; c < n && n > 1 && e->status >= 0; c++)
+        if (faint >> c & 1) (void)hdi_geo_solve(g, s + c, 1, rep, e);
+    return e->status;
 }
 
-/* The distances of up to a batch of columns of one vertex each. Columns whose heat fades are computed again
- * alone. */
-static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
-                               hd_error *e) {
+/* The arrays of a batch. */
+static hd_status hdi_geo_widen(hd_geodesic *g, hd_error *e) {
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
-    int faint = 0, none;
-    int32_t c;
     if (!g->wide_x)
         g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
     if (!g->wide_x) return e->status;
     g->wide_b = g->wide_x + size;
     g->wide_work = g->wide_b + size;
-    if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
-    for (c = 0; c < n; c++)
-        if (faint >> c & 1 && hdi_geo_solve(g, s + c, 1, &none, rep, e) < 0) break;
-    return e->status;
+    return HD_OK;
 }
 
 /* Columns of distances, ldd apart, from sources that are checked. */
@@ -23827,7 +23861,6 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
     const int32_t n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    int faint;
     for (m = 0; m < n && e->status >= 0; m += k) {
         hdi_scope scope = hdi_scope_begin(g->ctx, e);
         k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
@@ -23836,72 +23869,10 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
             if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
             s[c].d = D + (size_t)(m + c) * ldd;
         }
-        if (e->status >= 0 && k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
-        else if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
+        if (e->status >= 0 && (k == 1 || hdi_geo_widen(g, e) >= 0)) (void)hdi_geo_solve(g, s, k, rep, e);
         (void)hdi_scope_end(&scope);
     }
     return e->status;
-}
-
-/* ---- options and arguments ---- */
-
-#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
-
-/* Checks the options, and resolves into in what they say about the faces. */
-static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in,
-                               int32_t *neighbours, hd_error *e) {
-    const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
-    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
-    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
-                     o->t_in_h2, e);
-    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
-               "geodesic: unknown mass", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
-    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
-               "geodesic: unknown border", e);
-    hdi_intrinsic_opts(o->triangulation, o->mollify, in, e);
-    in->updatable = o->updatable;
-    in->split = poly && in->flips;
-    *neighbours = hdi_point_neighbours(o->neighbours, m, e);
-    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
-               "geodesic: stiffening is not between 0 and 1e100", e);
-    hdi_refuse(o->stiffening != 0 && (!poly || in->flips),
-               "geodesic: stiffening is for polygons that are not split", e);
-    hdi_refuse(points && o->triangulation != HD_TRIANGULATION_TUFTED,
-               "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
-    hdi_refuse(points && o->border != HD_GEODESIC_BORDER_NATURAL,
-               "geodesic: points cannot tell their border", e);
-    hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
-               "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
-    hdi_refuse(o->updatable && (in->flips || poly),
-               "geodesic: only plans of triangles in space are updatable", e);
-    return e->status;
-}
-
-/* The plan of a mesh. */
-static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd_geodesic_opts *o,
-                                hdi_call *c) {
-    hdi_scope s;
-    hdi_input in;
-    hd_geodesic *g;
-    int32_t neighbours;
-    memset(&in, 0, sizeof in);
-    if (hdi_view_check(mesh, c->e) < 0 || hdi_geo_check(o, mesh, &in, &neighbours, c->e) < 0)
-        return c->e->status;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, mesh->n, c->ctx, c->e) < 0)
-        return c->e->status;
-    g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
-    if (!g) return c->e->status;
-    g->ctx = hdi_enter_keep(c, &g->context);
-    hdi_hold(g->ctx);
-    g->n = mesh->n;
-    s = hdi_scope_begin(g->ctx, c->e);
-    if (hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) >= 0)
-        (void)hdi_geo_make(g, &in, neighbours, o, c->e);
-    if (hdi_scope_end(&s) >= 0) *out = g;
-    else hdi_geo_free(g);
-    return c->e->status;
 }
 
 /* Checks the arguments of a query, and fills the report with what the plan says. */
@@ -24258,13 +24229,11 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : (size_t)f->n;
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k && b == x && ldb != ldx; q++) {
-        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is overwritten before it moves */
-        memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
+    for (q = 0; q < k; q += 8) {                 /* x may be b: none is overwritten before it is read */
+        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
+        hdi_ldl_solve(f, &f->real, hdi_low32(k - at, 8), b + (size_t)at * ldb, ldb, x + (size_t)at * ldx,
+                      ldx);
     }
-    if (b == x) ldb = ldx;
-    for (q = 0; q < k; q += 8)
-        hdi_ldl_solve(f, &f->real, k - q < 8 ? k - q : 8, b + (size_t)q * ldb, ldb, x + (size_t)q * ldx, ldx);
     return HD_OK;
 }
 
@@ -24540,6 +24509,7 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err) {
     hd_geodesic_opts o;
+    hd_geodesic *g;
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
@@ -24549,7 +24519,14 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
     if (!out || !mesh) return hdi_missing(c.e);
     if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
     if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
-    return hdi_geo_create(out, mesh, &o, &c);
+    if (hdi_view_check(mesh, c.e) < 0) return c.e->status;
+    g = (hd_geodesic *)hdi_alloc_zero(c.ctx, 1, sizeof *g, c.e);
+    if (!g) return c.e->status;
+    g->ctx = hdi_enter_keep(&c, &g->context);
+    hdi_hold(g->ctx);
+    if (hdi_geo_make(g, mesh, &o, c.e) >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
