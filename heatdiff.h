@@ -4324,6 +4324,8 @@ static hd_status hdi_view_check(const hd_mesh *m, hd_error *e) {
     const int points = m->shape == HD_POINTS, faces = m->n_faces > 0 && !points;
     const int corners = m->corner || m->corner_u16;
     if (hdi_view_check_places(m, e) < 0) return e->status;
+    if (!HDI_HAS_POLYGONS && m->shape == HD_POLYGONS) return HDI_LEFT_OUT(e, POLYGONS, "polygons");
+    if (!HDI_HAS_POINTS && points) return HDI_LEFT_OUT(e, POINTS, "points");
     hdi_refuse(m->shape < HD_TRIANGLES || m->shape > HD_POINTS, "mesh: unknown shape", e);
     hdi_refuse(m->n_faces < 0, "mesh: a size is negative", e);
     hdi_refuse(m->corner && m->corner_u16, "mesh: set one of corner and corner_u16", e);
@@ -23228,8 +23230,7 @@ static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_in
                "geodesic: points cannot tell their border", e);
     hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
                "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
-    hdi_refuse(o->updatable && (in->flips || poly),
+    hdi_refuse(o->updatable && (in->flips || poly || m->lengths),
                "geodesic: only plans of triangles in space are updatable", e);
     return hdi_point_neighbours(o->neighbours, m, e);
 }
@@ -23243,7 +23244,7 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hd_mesh *mesh, const hd_geod
     hdi_surface z;
     int32_t neighbours;
     memset(&in, 0, sizeof in);
-    neighbours = hdi_geo_check(o, mesh, &in, e);
+    neighbours = hdi_view_check(mesh, e) < 0 ? 0 : hdi_geo_check(o, mesh, &in, e);
     if (e->status < 0 || (perm && hdi_order_check(perm, mesh->n, g->ctx, e) < 0) ||
         hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) < 0)
         return hdi_scope_end(&s);
@@ -23345,15 +23346,12 @@ static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const d
  * gradient of the known distances. dim becomes the largest |u| of the faces below least. Loops over columns
  * are written so that compilers make vectors of them: without branches, with one array that is changed. */
 static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, const int k, const double *HDI_RESTRICT u,
-                                    const double *least, const char *done, const hdi_geo_source *s,
-                                    double *HDI_RESTRICT b, double *dim) {
-    double x[HDI_GEO_WIDE], y[HDI_GEO_WIDE], norm2[HDI_GEO_WIDE], most[HDI_GEO_WIDE], low[HDI_GEO_WIDE];
+                                    const double *HDI_RESTRICT least, const char *done,
+                                    const hdi_geo_source *s, double *HDI_RESTRICT b,
+                                    double *HDI_RESTRICT dim) {
+    double x[HDI_GEO_WIDE], y[HDI_GEO_WIDE], norm2[HDI_GEO_WIDE];
     int32_t f;
     int c;
-    for (c = 0; c < k; c++) {
-        most[c] = dim[c];
-        low[c] = least[c];
-    }
     for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
         const int64_t at[3] = {k * (int64_t)a->v[0], k * (int64_t)a->v[1], k * (int64_t)a->v[2]};
@@ -23365,12 +23363,12 @@ static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, const int k, const dou
         }
         for (c = 0; c < k; c++) {
             const double a0 = fabs(u[at[0] + c]), a1 = fabs(u[at[1] + c]), a2 = fabs(u[at[2] + c]);
-            const double m = hdi_max(hdi_max(a0, a1), a2), r = 1 / (m + (m >= low[c] ? 0 : HUGE_VAL));
+            const double m = hdi_max(hdi_max(a0, a1), a2), r = 1 / (m + (m >= least[c] ? 0 : HUGE_VAL));
             const double d1 = (a1 - a0) * r, d2 = (a2 - a0) * r;
             x[c] = q * d1;                       /* grad u times the area */
             y[c] = l * d2 - p * d1;
             norm2[c] = x[c] * x[c] + y[c] * y[c];
-            most[c] = hdi_max(most[c], m >= low[c] ? 0 : m);
+            dim[c] = hdi_max(dim[c], m >= least[c] ? 0 : m);
         }
         for (c = 0; c < k; c++) {
             const double w = k == 1 ? norm2[c] > flat ? minus / sqrt(norm2[c]) : 0
@@ -23382,7 +23380,6 @@ static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, const int k, const dou
         for (c = 0; c < k; c++) b[at[1] + c] += x[c];
         for (c = 0; c < k; c++) b[at[2] + c] += y[c];
     }
-    for (c = 0; c < k; c++) dim[c] = most[c];
 }
 
 #if HDI_X86
@@ -24064,9 +24061,6 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
     lap = hdi_lap_new(&o, mesh ? mesh->n : 0, mesh ? hdi_lap_kind(mesh, &o) : o.kind, err, &c);
     if (!lap) return c.e->status;
     if (!out || !mesh) (void)hdi_missing(c.e);
-    else if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS)
-        (void)HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    else if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) (void)HDI_LEFT_OUT(c.e, POINTS, "points");
     else (void)hdi_lap_fill(lap, mesh, &o, c.e);
     return hdi_lap_end(out, lap, c.e);
 }
@@ -24517,9 +24511,6 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
         return c.e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
     if (!out || !mesh) return hdi_missing(c.e);
-    if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
-    if (hdi_view_check(mesh, c.e) < 0) return c.e->status;
     g = (hd_geodesic *)hdi_alloc_zero(c.ctx, 1, sizeof *g, c.e);
     if (!g) return c.e->status;
     g->ctx = hdi_enter_keep(&c, &g->context);
