@@ -23230,7 +23230,8 @@ static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_in
                "geodesic: points cannot tell their border", e);
     hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
                "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(o->updatable && (in->flips || poly || m->lengths),
+    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
+    hdi_refuse(o->updatable && (in->flips || poly),
                "geodesic: only plans of triangles in space are updatable", e);
     return hdi_point_neighbours(o->neighbours, m, e);
 }
