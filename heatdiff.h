@@ -4324,6 +4324,8 @@ static hd_status hdi_view_check(const hd_mesh *m, hd_error *e) {
     const int points = m->shape == HD_POINTS, faces = m->n_faces > 0 && !points;
     const int corners = m->corner || m->corner_u16;
     if (hdi_view_check_places(m, e) < 0) return e->status;
+    if (!HDI_HAS_POLYGONS && m->shape == HD_POLYGONS) return HDI_LEFT_OUT(e, POLYGONS, "polygons");
+    if (!HDI_HAS_POINTS && points) return HDI_LEFT_OUT(e, POINTS, "points");
     hdi_refuse(m->shape < HD_TRIANGLES || m->shape > HD_POINTS, "mesh: unknown shape", e);
     hdi_refuse(m->n_faces < 0, "mesh: a size is negative", e);
     hdi_refuse(m->corner && m->corner_u16, "mesh: set one of corner and corner_u16", e);
@@ -22530,14 +22532,19 @@ enum { HDI_GEO_WIDE = 8, HDI_GEO_WIDE_FROM = 3 };
 #define HDI_GEO_FLAT 1e-26
 #define HDI_GEO_RESIDUAL 1e-6    /* a larger relative residual is reported as HD_WARN_ACCURACY */
 
+/* Factors: of L + B/t; the same with the border held at zero, for the mean of two borders; of L with the rows
+ * pin replaced by those of the identity. */
+enum { HDI_GEO_HEAT, HDI_GEO_COLD, HDI_GEO_POISSON, HDI_GEO_FACTORS };
+
+/* The values of phi at the points of a source in a component. low > high: there is none. */
+typedef struct hdi_geo_span { double low, high; } hdi_geo_span;
+
 struct hd_geodesic {
     hd_context *ctx, context;
     int32_t n, n_active, n_faces, n_components;
     double h, t;
     hdi_symbolic sym;
-    /* of L + B/t, and of L with the rows pin replaced by those of the identity */
-    hdi_factor heat, poisson;
-    hdi_factor cold;             /* of the mean of two borders: L + B/t with the border held at zero */
+    hdi_factor factor[HDI_GEO_FACTORS];
     hd_geodesic_border border;
     char *held;                  /* [n_active] rows of the border; NULL: the border is natural */
     double copies;               /* L and B are multiplied by this */
@@ -22551,7 +22558,7 @@ struct hd_geodesic {
     char *mark;                  /* [n_active] 1: u is known; or a source */
     double *x, *b, *r, *work;    /* [n_active] each; sweeps */
     double *wide_x, *wide_b, *wide_work;   /* the same for a batch, one array made when first needed */
-    int64_t *value_ptr;          /* [n_components + 1] where the values of a source begin */
+    hdi_geo_span *span;          /* [n_components] of each column */
     hd_laplacian *lap;           /* of updatable plans, else NULL */
     int32_t *from;               /* [n_faces] which of the mesh's faces each is; of updatable plans kept */
     double t_asked, t_in_h2;     /* 0: t_in_h2 h^2 */
@@ -22562,11 +22569,10 @@ struct hd_geodesic {
 /* ---- making ---- */
 
 static void hdi_geo_factors_free(hd_geodesic *g, hd_context *ctx) {
-    hdi_factor *const factor[3] = {&g->heat, &g->poisson, &g->cold};
-    int q;
-    for (q = 0; q < 3; q++) {
-        if (factor[q]->ctx) factor[q]->ctx = ctx;
-        hdi_factor_free(factor[q]);
+    hdi_factor *f = g->factor;
+    for (; f < g->factor + HDI_GEO_FACTORS; f++) {
+        if (f->ctx) f->ctx = ctx;
+        hdi_factor_free(f);
     }
 }
 
@@ -22682,7 +22688,7 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
     int32_t i, v;
     g->active = HDI_TAKE(own, char, g->sym.n_super);
     g->mark = HDI_TAKE(own, char, g->n_active);
-    g->value_ptr = HDI_TAKE(own, int64_t, (int64_t)g->n_components + 1);
+    g->span = HDI_TAKE(own, hdi_geo_span, HDI_GEO_WIDE * (int64_t)g->n_components);
     g->x = HDI_TAKE(own, double, g->n_active);
     g->b = HDI_TAKE(own, double, g->n_active);
     g->r = HDI_TAKE(own, double, g->n_active);
@@ -22704,25 +22710,9 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
     return own->e->status < 0 ? own->e->status : hdi_geo_masses(g, lap, g->mass, own->e);
 }
 
-/* Factors the matrix val, and frees what only factoring needs. */
-static hd_status hdi_geo_factor(hd_geodesic *g, hdi_factor *f, const hd_laplacian *lap, const double *val,
-                                hd_error *e) {
-    hdi_values v;
-    memset(&v, 0, sizeof v);
-    v.real = val;
-    if (hdi_factor_make(f, NULL, &g->sym, 1, g->ctx, e) < 0) return e->status;
-    if (hdi_factor_run(f, &v, e) < 0) {
-        if (e->row >= 0) e->vertex = lap->vertex[e->row];
-        e->row = -1;
-        return e->status;
-    }
-    hdi_factor_settle(f);
-    return HD_OK;
-}
-
-/* val = L + shift B/t by rows of lap, with the rows and columns marked in away, in elimination order,
- * replaced by those of the identity. */
-static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, double shift, const char *away,
+/* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
+ * order, replaced by those of the identity. */
+static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int heat, const char *away,
                            double *val) {
     int64_t p;
     int32_t i;
@@ -22730,7 +22720,7 @@ static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, double
         const int32_t row = g->row[lap->vertex[i]];
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
             const int32_t k = g->row[lap->vertex[lap->L.col[p]]];
-            val[p] = g->copies * lap->L.val[p] + (row == k && shift > 0 ? g->mass[row] : 0);
+            val[p] = g->copies * lap->L.val[p] + (row == k && heat ? g->mass[row] : 0);
             if (away && (away[row] || away[k])) val[p] = row == k;
         }
     }
@@ -22746,17 +22736,23 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     /* the last factor, and what is kept of those before */
     const uint64_t need = hdi_factor_bytes(&g->sym, 1) +
                           (mean ? 16 : 8) * (uint64_t)g->sym.panel[g->sym.n_super];
+    const char *const away[HDI_GEO_FACTORS] = {mean ? NULL : g->held, g->held, pinned};
+    hdi_values v;
     int32_t c;
+    int q;
     if (e->status < 0 || hdi_need(g->ctx, need, "two factors", e) < 0) return hdi_scope_end(&s);
-    hdi_geo_matrix(g, lap, 1, mean ? NULL : g->held, val);
-    if (hdi_geo_factor(g, &g->heat, lap, val, e) < 0) return hdi_scope_end(&s);
-    if (mean) {
-        hdi_geo_matrix(g, lap, 1, g->held, val);
-        if (hdi_geo_factor(g, &g->cold, lap, val, e) < 0) return hdi_scope_end(&s);
-    }
+    memset(&v, 0, sizeof v);
+    v.real = val;
     for (c = 0; c < g->n_components; c++) pinned[g->pin[c]] = 1;
-    hdi_geo_matrix(g, lap, 0, pinned, val);
-    (void)hdi_geo_factor(g, &g->poisson, lap, val, e);
+    for (q = 0; q < HDI_GEO_FACTORS && e->status >= 0; q++) {
+        hdi_factor *f = g->factor + q;
+        if (q == HDI_GEO_COLD && !mean) continue;
+        hdi_geo_matrix(g, lap, q != HDI_GEO_POISSON, away[q], val);
+        if (hdi_factor_make(f, NULL, &g->sym, 1, g->ctx, e) >= 0 && hdi_factor_run(f, &v, e) >= 0)
+            hdi_factor_settle(f);
+    }
+    if (e->row >= 0) e->vertex = lap->vertex[e->row];
+    e->row = -1;
     return hdi_scope_end(&s);
 }
 
@@ -22788,31 +22784,71 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
     return hdi_geo_coincident(g, in->mesh.xyz, own->e);
 }
 
-static hd_status hdi_geo_make(hd_geodesic *g, const hdi_input *in, int32_t neighbours,
-                              const hd_geodesic_opts *o, hd_error *e) {
+#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
+
+/* Checks the options, and resolves into in what they say about the faces. Returns the option neighbours. */
+static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in, hd_error *e) {
+    const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
+    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
+    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
+                     o->t_in_h2, e);
+    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
+               "geodesic: unknown mass", e);
+    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
+    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
+               "geodesic: unknown border", e);
+    hdi_intrinsic_opts(o->triangulation, o->mollify, in, e);
+    in->updatable = o->updatable;
+    in->split = poly && in->flips;
+    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
+               "geodesic: stiffening is not between 0 and 1e100", e);
+    hdi_refuse(o->stiffening != 0 && (!poly || in->flips),
+               "geodesic: stiffening is for polygons that are not split", e);
+    hdi_refuse(points && o->triangulation != HD_TRIANGULATION_TUFTED,
+               "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
+    hdi_refuse(points && o->border != HD_GEODESIC_BORDER_NATURAL,
+               "geodesic: points cannot tell their border", e);
+    hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
+               "geodesic: Voronoi areas are of triangles, not of polygons", e);
+    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
+    hdi_refuse(o->updatable && (in->flips || poly),
+               "geodesic: only plans of triangles in space are updatable", e);
+    return hdi_point_neighbours(o->neighbours, m, e);
+}
+
+/* Fills the plan of a mesh. */
+static hd_status hdi_geo_make(hd_geodesic *g, const hd_mesh *mesh, const hd_geodesic_opts *o, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e), *own = hdi_geo_keep(g, e);
-    hd_laplacian *lap = hdi_lap_shell(g->ctx, e);
     const int32_t *perm = o->ordering == HD_ORDERING_OWN ? o->perm : NULL;
+    hd_laplacian *lap;
+    hdi_input in;
     hdi_surface z;
+    int32_t neighbours;
+    memset(&in, 0, sizeof in);
+    neighbours = hdi_view_check(mesh, e) < 0 ? 0 : hdi_geo_check(o, mesh, &in, e);
+    if (e->status < 0 || (perm && hdi_order_check(perm, mesh->n, g->ctx, e) < 0) ||
+        hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) < 0)
+        return hdi_scope_end(&s);
+    lap = hdi_lap_shell(g->ctx, e);
     if (!lap) return hdi_scope_end(&s);
-    lap->n = g->n;
+    g->n = lap->n = mesh->n;
     /* the row sums of fem are the lumped mass */
     lap->kind = o->mass == HD_GEODESIC_MASS_VORONOI ? HD_LAPLACIAN_VORONOI_COT : HD_LAPLACIAN_FEM;
     lap->points.neighbours = neighbours;
     g->border = o->border;
     g->t_asked = o->t;
     g->t_in_h2 = o->t_in_h2 > 0 ? o->t_in_h2 : 1;
+    if (o->updatable) g->lap = lap;
     if ((o->border == HD_GEODESIC_BORDER_NATURAL || hdi_holding_make(lap, 2, NULL, 0, e) >= 0) &&
-        hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, in, &s) >= 0) {
-        if (in->points) lap->h = z.unit;       /* the mean edge, as on meshes */
+        hdi_progress(g->ctx, "assemble", 0, e) >= 0 && hdi_lap_surface(lap, &z, &in, &s) >= 0) {
+        if (in.points) lap->h = z.unit;          /* the mean edge, as on meshes */
         g->n_active = lap->n_active;
         g->copies = z.parts > 0 ? z.parts : 1;
-        if (o->updatable) g->lap = lap;
-        if (e->status >= 0) (void)hdi_lap_components(lap, e);
+        (void)hdi_lap_components(lap, e);
         g->n_components = lap->n_components;
     }
     if (e->status >= 0 && hdi_pair_analyse(&g->sym, lap, o->ordering, perm, g->ctx, e) >= 0 &&
-        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, in, own) >= 0) {
+        hdi_geo_rows(g, lap, own) >= 0 && hdi_geo_store(g, lap, &z, &in, own) >= 0) {
         hdi_scope_end(&s);                       /* the mesh is not needed any more */
         g->ready = hdi_geo_factors(g, lap, e) >= 0;
     }
@@ -22847,18 +22883,16 @@ typedef struct hdi_geo_item {
     int32_t vertex;              /* one of its corners */
     double a[3], b[3];
     double length;               /* in units of h, -1: it has been found in no face */
+    double value;                /* of phi, less the known distance there; of a curve the mean of all */
 } hdi_geo_item;
 
 /* What the distances of a column start from. */
 typedef struct hdi_geo_source {
     hdi_geo_item *item;          /* [n] */
     int32_t n, curve;
-    double *near_by;             /* [n_active] distance along the items' faces, in units of h; NULL: all items
-                                    are vertices */
-    int32_t *home, n_home;       /* [n_home] these faces */
-    double *first;               /* [n_active] u of the first stage; NULL: not several vertices */
-    hdi_pair *sorted;            /* [n] */
-    double *value;               /* [n] phi at the items, by component, ascending */
+    double *near_by;             /* [n_active] known distances in units of h, else HUGE_VAL; or NULL */
+    char *home;                  /* [n_faces] 1: an item lies in the face; NULL: all items are vertices */
+    double *first;               /* [n_active] u of the first stage; NULL: one item, or a curve */
     double *d;                   /* [n] the column */
 } hdi_geo_source;
 
@@ -22876,37 +22910,46 @@ static HDI_INLINE double hdi_geo_inverse_root(double x) {
     return r;
 }
 
-typedef struct hdi_geo_range { int32_t begin, end; } hdi_geo_range;
+/* r += sign L x of a triangle. */
+static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const double *x, double *r) {
+    const double d1 = x[a->v[1]] - x[a->v[0]], d2 = x[a->v[2]] - x[a->v[0]], unit = sign * a->copies;
+    const double gx = d1 / (2 * a->l), gy = (d2 - a->p / a->l * d1) / (2 * a->q);    /* grad x */
+    const double g1 = unit * (a->q * gx - a->p * gy), g2 = unit * (a->l * gy);
+    r[a->v[0]] -= g1 + g2;
+    r[a->v[1]] += g1;
+    r[a->v[2]] += g2;
+}
 
 /* Adds div X of X = -grad |u| / |grad |u|| to b, integrated against the hat functions. A face adds nothing
  * where no |u| reaches least, or where the slope is within rounding: where fronts of symmetric meshes meet,
  * rounding would choose a side. u is normalised by its largest modulus on the face before anything is
- * squared. Faces with a corner that is marked in done are left out. dim becomes the largest |u| of the faces
- * below least. Loops over columns are written so that compilers make vectors of them: without branches, and
- * with one array that is changed. */
-static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, hdi_geo_range faces, const int k,
-                                    const double *HDI_RESTRICT u, const double *least, const char *done,
-                                    double *HDI_RESTRICT b, double *dim) {
-    double x[HDI_GEO_WIDE], y[HDI_GEO_WIDE], norm2[HDI_GEO_WIDE], most[HDI_GEO_WIDE], low[HDI_GEO_WIDE];
+ * squared. Faces with a corner that is marked in done are left out. In the home faces of s, or NULL, X is the
+ * gradient of the known distances. dim becomes the largest |u| of the faces below least. Loops over columns
+ * are written so that compilers make vectors of them: without branches, with one array that is changed. */
+static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, const int k, const double *HDI_RESTRICT u,
+                                    const double *HDI_RESTRICT least, const char *done,
+                                    const hdi_geo_source *s, double *HDI_RESTRICT b,
+                                    double *HDI_RESTRICT dim) {
+    double x[HDI_GEO_WIDE], y[HDI_GEO_WIDE], norm2[HDI_GEO_WIDE];
     int32_t f;
     int c;
-    for (c = 0; c < k; c++) {
-        most[c] = dim[c];
-        low[c] = least[c];
-    }
-    for (f = faces.begin; f < faces.end; f++) {
+    for (f = 0; f < g->n_faces; f++) {
         const hdi_geo_face *a = g->face + f;
         const int64_t at[3] = {k * (int64_t)a->v[0], k * (int64_t)a->v[1], k * (int64_t)a->v[2]};
         const double l = a->l, p = a->p, q = a->q, minus = -a->copies, flat = HDI_GEO_FLAT * l * l;
         if (done && (done[a->v[0]] | done[a->v[1]] | done[a->v[2]])) continue;
+        if (s && s->home[f]) {
+            hdi_geo_stiff(a, 1, s->near_by, b);
+            continue;
+        }
         for (c = 0; c < k; c++) {
             const double a0 = fabs(u[at[0] + c]), a1 = fabs(u[at[1] + c]), a2 = fabs(u[at[2] + c]);
-            const double m = hdi_max(hdi_max(a0, a1), a2), s = 1 / (m + (m >= low[c] ? 0 : HUGE_VAL));
-            const double d1 = (a1 - a0) * s, d2 = (a2 - a0) * s;
+            const double m = hdi_max(hdi_max(a0, a1), a2), r = 1 / (m + (m >= least[c] ? 0 : HUGE_VAL));
+            const double d1 = (a1 - a0) * r, d2 = (a2 - a0) * r;
             x[c] = q * d1;                       /* grad u times the area */
             y[c] = l * d2 - p * d1;
             norm2[c] = x[c] * x[c] + y[c] * y[c];
-            most[c] = hdi_max(most[c], m >= low[c] ? 0 : m);
+            dim[c] = hdi_max(dim[c], m >= least[c] ? 0 : m);
         }
         for (c = 0; c < k; c++) {
             const double w = k == 1 ? norm2[c] > flat ? minus / sqrt(norm2[c]) : 0
@@ -22918,18 +22961,17 @@ static HDI_INLINE void hdi_geo_flow(const hd_geodesic *g, hdi_geo_range faces, c
         for (c = 0; c < k; c++) b[at[1] + c] += x[c];
         for (c = 0; c < k; c++) b[at[2] + c] += y[c];
     }
-    for (c = 0; c < k; c++) dim[c] = most[c];
 }
 
 #if HDI_X86
-static HDI_AVX2 void hdi_geo_flow_avx2(const hd_geodesic *g, hdi_geo_range all, const double *u,
-                                       const double *least, double *b, double *dim) {
-    hdi_geo_flow(g, all, HDI_GEO_WIDE, u, least, NULL, b, dim);
+static HDI_AVX2 void hdi_geo_flow_avx2(const hd_geodesic *g, const double *u, const double *least, double *b,
+                                       double *dim) {
+    hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
 }
 
-static HDI_AVX512 void hdi_geo_flow_avx512(const hd_geodesic *g, hdi_geo_range all, const double *u,
-                                           const double *least, double *b, double *dim) {
-    hdi_geo_flow(g, all, HDI_GEO_WIDE, u, least, NULL, b, dim);
+static HDI_AVX512 void hdi_geo_flow_avx512(const hd_geodesic *g, const double *u, const double *least,
+                                           double *b, double *dim) {
+    hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
 }
 #endif
 
@@ -22960,42 +23002,23 @@ static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const
     for (p = begin; p < end; p++) b[k * (int64_t)z->row[p]] += norm2 * hdi_dot3(z->side + 3 * p, W);
 }
 
-/* r += sign L x of a triangle. */
-static HDI_INLINE void hdi_geo_stiff(const hdi_geo_face *a, double sign, const double *x, double *r) {
-    const double d1 = x[a->v[1]] - x[a->v[0]], d2 = x[a->v[2]] - x[a->v[0]], unit = sign * a->copies;
-    const double gx = d1 / (2 * a->l), gy = (d2 - a->p / a->l * d1) / (2 * a->q);    /* grad x */
-    const double g1 = unit * (a->q * gx - a->p * gy), g2 = unit * (a->l * gy);
-    r[a->v[0]] -= g1 + g2;
-    r[a->v[1]] += g1;
-    r[a->v[2]] += g2;
-}
-
-/* Adds div X to b: the right-hand side of L phi = b. In the home faces of s, X is the gradient of the known
- * distances. Returns the columns as bits in which some faces have heat, but all of it below least. */
+/* Adds div X to b: the right-hand side of L phi = b. done, s: see hdi_geo_flow, of one column. Returns the
+ * columns as bits in which some faces have heat, but all of it below least. */
 static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
                               const char *done, const hdi_geo_source *s, double *b) {
     const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
-    const int32_t end = g->n_faces;
-    hdi_geo_range part = {0, g->n_faces};
     double dim[HDI_GEO_WIDE] = {0};
     int32_t q;
     int c, faint = 0;
-    for (q = 0; s && q < s->n_home; q++) {
-        part.end = s->home[q];
-        hdi_geo_flow(g, part, 1, u, least, NULL, b, dim);
-        hdi_geo_stiff(g->face + part.end, 1, s->near_by, b);
-        part.begin = part.end + 1;
-        part.end = end;
-    }
-    for (q = part.begin; q < end && g->poly.ptr; q++)
+    for (q = 0; q < g->n_faces && g->poly.ptr; q++)
         for (c = 0; c < k; c++) hdi_geo_poly_flow(&g->poly, q, k, u + c, least[c], done, b + c, dim + c);
     if (g->poly.ptr) {}
-    else if (k == 1) hdi_geo_flow(g, part, 1, u, least, done, b, dim);
+    else if (k == 1) hdi_geo_flow(g, 1, u, least, done, s, b, dim);
 #if HDI_X86
-    else if (level >= 2) hdi_geo_flow_avx512(g, part, u, least, b, dim);
-    else if (level == 1) hdi_geo_flow_avx2(g, part, u, least, b, dim);
+    else if (level >= 2) hdi_geo_flow_avx512(g, u, least, b, dim);
+    else if (level == 1) hdi_geo_flow_avx2(g, u, least, b, dim);
 #endif
-    else hdi_geo_flow(g, part, HDI_GEO_WIDE, u, least, NULL, b, dim);
+    else hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
     (void)level;
     for (c = 0; c < k; c++) faint |= (dim[c] > 0) << c;
     return faint;
@@ -23011,11 +23034,11 @@ static void hdi_geo_subtract(const hd_geodesic *g, const double *HDI_RESTRICT x,
     for (f = 0; f < g->n_faces && g->face; f++) hdi_geo_stiff(g->face + f, -1, x, r);
 }
 
-/* x = the inverse times x in k columns. Of heat x is not zero in the fronts g->active only, and it is asked
- * for in those wanted; NULL: in all. */
-static void hdi_geo_sweep(const hd_geodesic *g, const hdi_factor *f, int k, double *x, const char *wanted) {
-    hdi_sweep z = hdi_sweep_open(f, k, x, k == 1 ? g->work : g->wide_work);
-    z.active = f == &g->poisson ? NULL : g->active;
+/* x = the inverse of a factor times x in k columns. Of heat x is not zero in the fronts g->active only, and
+ * it is asked for in those wanted; NULL: in all. */
+static void hdi_geo_sweep(const hd_geodesic *g, int which, int k, double *x, const char *wanted) {
+    hdi_sweep z = hdi_sweep_open(g->factor + which, k, x, k == 1 ? g->work : g->wide_work);
+    z.active = which == HDI_GEO_POISSON ? NULL : g->active;
     z.wanted = wanted;
     hdi_sweep_run(&z, g->ctx);
 }
@@ -23056,11 +23079,11 @@ static double hdi_geo_residual(const hd_geodesic *g, int heat, const double *x, 
  * A stage goes down to the fronts only that have rows beyond. */
 
 /* g->x = f, where u was, of which |u| >= least is known now: g->mark. What was known before has no neighbours
- * beyond. f [2 n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
+ * beyond. f [n]: work. Marks the fronts where it is, and those wanted, which have rows beyond. Returns 0 if
  * there is no usable number along the border. */
 static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted) {
-    const size_t n = (size_t)g->n_active;
-    double *x = g->x, *from_known = f, *from_beyond = f + n, most = 0;
+    const size_t size = (size_t)g->n_active * sizeof *f;
+    double *x = g->x, most = 0;
     int32_t i;
     for (i = 0; i < g->n_active; i++) {
         const int beyond = !g->mark[i] && !(fabs(x[i]) >= least);
@@ -23068,11 +23091,12 @@ static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted)
         if (beyond || g->mark[i]) x[i] = 0;
         g->mark[i] = (char)!beyond;
     }
-    memset(f, 0, 2 * n * sizeof *f);
-    hdi_geo_subtract(g, x, from_known);
-    hdi_geo_subtract(g, g->r, from_beyond);
+    memset(f, 0, size);
+    hdi_geo_subtract(g, x, f);
+    memset(x, 0, size);
+    hdi_geo_subtract(g, g->r, x);
     for (i = 0; i < g->n_active; i++) {
-        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -from_beyond[i] : from_known[i];
+        x[i] = hdi_geo_is_held(g, i) ? 0 : g->mark[i] ? -x[i] : f[i];
         most = hdi_max(most, fabs(x[i]));
     }
     memset(g->active, 0, (size_t)g->sym.n_super);
@@ -23089,12 +23113,12 @@ static int hdi_geo_border(hd_geodesic *g, double least, double *f, char *wanted)
  * component ends, or weights are zero), the rest has no direction. */
 static hd_status hdi_geo_further(hd_geodesic *g, double least, int32_t *n_stages, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
-    double *f = HDI_TAKE(&s, double, 2 * (uint64_t)g->n_active), most;
+    double *f = HDI_TAKE(&s, double, g->n_active), most;
     char *wanted = HDI_TAKE(&s, char, g->sym.n_super);
     int32_t i, faint = e->status >= 0;
     memset(g->mark, 0, (size_t)g->n_active);
     while (faint && hdi_geo_border(g, least, f, wanted) && hdi_progress(g->ctx, "solve", 0.5, e) >= 0) {
-        hdi_geo_sweep(g, &g->heat, 1, g->x, wanted);
+        hdi_geo_sweep(g, HDI_GEO_HEAT, 1, g->x, wanted);
         for (i = 0, most = 0; i < g->n_active; i++) most = hdi_max(most, g->mark[i] ? 0 : fabs(g->x[i]));
         least = most * HDI_GEO_FAINT;
         faint = least > DBL_MIN && hdi_geo_divergence(g, 1, g->x, &least, g->mark, NULL, g->b);
@@ -23129,12 +23153,8 @@ static int hdi_geo_item_add(const hd_geodesic *g, const hd_sources *s, hdi_geo_i
         for (k = 0; k < x->n && x->row[k] != row; k++) {}
         if (row < 0) continue;
         if (k == 3) return 0;
-        if (k == x->n) {
-            x->a[k] = x->b[k] = 0;
-            x->row[x->n++] = row;
-        }
-        if (!end) x->a[k] += w;
-        else x->b[k] += w;
+        if (k == x->n) x->row[x->n++] = row;
+        *((end ? x->b : x->a) + k) += w;
     }
     return none == 0 || (parts == 1 && !s->curve);
 }
@@ -23167,22 +23187,14 @@ static int hdi_geo_item_in(hdi_geo_item *x, const hdi_geo_face *f, double *near_
     return 1;
 }
 
-static hd_status hdi_geo_lost(int32_t q, hd_error *e) {
-    return hdi_source_fail(e, HD_ERR_ARGUMENT,
-                           "geodesic: a point of the source, or a piece of its curve, lies in no face", q,
-                           -1, 0);
-}
-
 /* Finds the faces that the items lie in. Refuses curves without a length. */
 static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, hdi_scope *in) {
     int32_t *first = HDI_TAKE(in, int32_t, g->n_active), f, i;   /* items by their first row, -1: none */
     double length = 0;
     int q;
-    z->home = HDI_TAKE(in, int32_t, g->n_faces);
-    z->near_by = HDI_TAKE(in, double, g->n_active);
+    z->home = HDI_TAKE_ZERO(in, char, g->n_faces);
     if (in->e->status < 0) return in->e->status;
     hdi_fill_i32(first, g->n_active, -1);
-    for (i = 0; i < g->n_active; i++) z->near_by[i] = HUGE_VAL;
     for (i = 0; i < z->n; i++) {
         hdi_geo_item *x = z->item + i;
         x->length = -1;
@@ -23190,15 +23202,14 @@ static hd_status hdi_geo_source_faces(hdi_geo_source *z, const hd_geodesic *g, h
         x->next = first[x->row[0]];
         first[x->row[0]] = i;
     }
-    for (f = 0; f < g->n_faces; f++) {
-        int here = 0;
+    for (f = 0; f < g->n_faces; f++)
         for (q = 0; q < 3; q++)
             for (i = first[g->face[f].v[q]]; i >= 0; i = z->item[i].next)
-                here |= hdi_geo_item_in(z->item + i, g->face + f, z->near_by);
-        if (here) z->home[z->n_home++] = f;
-    }
+                if (hdi_geo_item_in(z->item + i, g->face + f, z->near_by)) z->home[f] = 1;
     for (i = 0; i < z->n; i++) {
-        if (z->item[i].length < 0) return hdi_geo_lost(i, in->e);
+        if (z->item[i].length < 0)
+            return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a point of the source, or a piece of "
+                                   "its curve, lies in no face", i, -1, 0);
         length += z->item[i].length;
     }
     if (z->curve && !(length > 0))
@@ -23216,8 +23227,6 @@ static hd_status hdi_geo_source_make(hdi_geo_source *z, const hd_geodesic *g, co
     z->curve = s->curve != 0;
     z->n = (int32_t)(end - begin) - z->curve;
     z->item = HDI_TAKE_ZERO(in, hdi_geo_item, z->n);
-    z->sorted = HDI_TAKE(in, hdi_pair, z->n);
-    z->value = HDI_TAKE(in, double, z->n);
     for (i = 0; i < z->n && in->e->status >= 0; i++) {
         hdi_geo_item *x = z->item + i;
         const int fits = hdi_geo_item_add(g, s, x, begin + i, 0) &&
@@ -23225,178 +23234,142 @@ static hd_status hdi_geo_source_make(hdi_geo_source *z, const hd_geodesic *g, co
         vertices = vertices && fits && x->n <= 1 && !z->curve;
         if (!vertices && g->poly.ptr)
             return hdi_fail(in->e, HD_ERR_ARGUMENT, "geodesic: on polygons sources are vertices only");
-        if (!fits) return hdi_geo_lost(i, in->e);
+        if (!fits) x->n = 0;                     /* no face will have it */
     }
+    if (z->n > 1 && !z->curve) z->first = HDI_TAKE(in, double, g->n_active);
+    if (z->n > 1 || !vertices) z->near_by = HDI_TAKE(in, double, g->n_active);
+    for (i = 0; i < g->n_active && z->near_by; i++) z->near_by[i] = HUGE_VAL;
     if (in->e->status < 0 || (!vertices && hdi_geo_source_faces(z, g, in) < 0)) return in->e->status;
     for (i = 0; i < z->n; i++)
-        for (q = 0; q < z->item[i].n; q++)
+        for (q = 0; q < z->item[i].n; q++) {
             if (hdi_geo_is_held(g, z->item[i].row[q]))
                 return hdi_source_fail(in->e, HD_ERR_ARGUMENT, "geodesic: a source lies on the border, which "
                                        "is held at zero; take the mean border", i,
                                        vertices ? z->item[i].vertex : -1, 0);
-    if (vertices && z->n > 1) z->first = HDI_TAKE(in, double, g->n_active);
-    return in->e->status;
+            if (vertices && z->near_by) z->near_by[z->item[i].row[q]] = 0;
+        }
+    return HD_OK;
 }
 
 /* ---- sources ---- */
 
 /* Adds the heat of a source to column x of k, which is clear, and opens the fronts that it touches. A vertex
- * named twice counts once. */
-static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, double *x) {
+ * named twice counts once. With span, heat is the value of phi above the least one of the component. */
+static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, const hdi_geo_span *span,
+                         double *x) {
     int32_t q, c;
     for (q = 0; q < s->n; q++) {
         const hdi_geo_item *p = s->item + q;
+        const double heat = span ? p->value - span[g->component[p->row[0]]].low : s->curve ? p->length : 1;
         for (c = 0; c < p->n; c++) {
             double *to = x + k * (int64_t)p->row[c];
-            *to = s->near_by ? *to + (s->curve ? p->length : 1) * (p->a[c] + p->b[c]) / 2 : 1;
+            *to = s->home ? *to + heat * (p->a[c] + p->b[c]) / 2 : heat;
             hdi_sweep_touch(&g->sym, p->row[c], g->active);
         }
     }
 }
 
-/* Collects phi at the source: at its points, or one mean along a curve, less the known distances there. They
- * ascend within each component. */
-static void hdi_geo_values(hd_geodesic *g, const hdi_geo_source *s, const double *phi) {
+/* Collects phi of column phi of k at the source: at its points, or one mean along a curve, less the known
+ * distances there. */
+static void hdi_geo_values(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *phi,
+                           hdi_geo_span *span) {
+    const hdi_geo_span none = {HUGE_VAL, -HUGE_VAL};
     double sum = 0, length = 0;
-    int32_t q, c, n = 0;
-    memset(g->value_ptr, 0, ((size_t)g->n_components + 1) * sizeof *g->value_ptr);
+    int32_t q, c;
+    for (c = 0; c < g->n_components; c++) span[k * (int64_t)c] = none;
     for (q = 0; q < s->n; q++) {
-        const hdi_geo_item *p = s->item + q;
+        hdi_geo_item *p = s->item + q;
+        hdi_geo_span *to = span + k * (int64_t)g->component[p->row[0]];
         double own = 0;
         if (p->n == 0) continue;
-        for (c = 0; c < p->n; c++)
-            own += (p->a[c] + p->b[c]) / 2 * (phi[p->row[c]] - (s->near_by ? s->near_by[p->row[c]] : 0));
+        for (c = 0; c < p->n; c++) {
+            const int32_t i = p->row[c];
+            own += (p->a[c] + p->b[c]) / 2 * (phi[k * (int64_t)i] - (s->near_by ? s->near_by[i] : 0));
+        }
         sum += p->length * own;
         length += p->length;
-        if (s->curve) n = 0;                     /* the last note, of all, remains */
-        s->sorted[n].key = hdi_rank(s->curve && length > 0 ? sum / length : own);
-        s->sorted[n++].id = g->component[p->row[0]];
+        if (s->curve) *to = none;                /* the last mean, of all, remains */
+        p->value = s->curve && length > 0 ? sum / length : own;
+        to->low = hdi_min(to->low, p->value);
+        to->high = hdi_max(to->high, p->value);
     }
-    for (q = 0; q < n; q++) g->value_ptr[s->sorted[q].id]++;
-    hdi_sort_pairs(s->sorted, n);
-    hdi_prefix_sum(g->value_ptr, g->n_components);
-    for (q = 0; q < n; q++) s->value[g->value_ptr[s->sorted[q].id]++] = hdi_unrank(s->sorted[q].key);
-    hdi_rewind(g->value_ptr, g->n_components);
 }
 
 /* ---- distances ---- */
 
-/* The smallest |phi - value| over the ascending values. */
-static double hdi_geo_nearest(const double *value, int64_t n, double phi) {
-    int64_t lo = 0, hi = n;
-    while (lo < hi) {
-        const int64_t mid = lo + (hi - lo) / 2;
-        if (value[mid] < phi) lo = mid + 1;
-        else hi = mid;
-    }
-    if (lo == 0) return value[0] - phi;
-    return lo < n ? hdi_min(value[lo] - phi, phi - value[lo - 1]) : phi - value[n - 1];
-}
-
-/* From phi, of n columns of k, to distances: zero at the sources, infinite on components without one. Columns
- * of a batch are from single vertices. Returns whether all distances that should be finite are, but for
- * columns with a bit in skip. */
-static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k, const double *phi,
-                           int skip) {
-    double at[HDI_GEO_WIDE];
-    int32_t own[HDI_GEO_WIDE], v, c, fine = 1;
-    for (c = 0; c < n && k > 1; c++) {
-        const int32_t i = s[c].item->n > 0 ? s[c].item->row[0] : -1;
-        own[c] = i < 0 ? -1 : g->component[i];
-        at[c] = i < 0 ? 0 : phi[k * (int64_t)i + c];
-    }
+/* From phi, of n columns of k, to distances: zero at the sources, infinite on components without one. Returns
+ * whether all distances that should be finite are. */
+static int hdi_geo_measure(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k,
+                           const double *phi) {
+    int32_t v, c, fine = 1;
+    for (c = 0; c < n; c++) hdi_geo_values(g, s + c, k, phi + c, g->span + c);
     for (v = 0; v < g->n; v++) {
-        const int32_t i = g->row[v], part = i < 0 ? 0 : g->component[i];
+        const int32_t i = g->row[v];
+        const hdi_geo_span *at = i < 0 ? NULL : g->span + k * (int64_t)g->component[i];
         for (c = 0; c < n; c++) {
-            const double *value = k > 1 ? at + c : s->value + g->value_ptr[part];
-            const int64_t count = k > 1 ? part == own[c] : g->value_ptr[part + 1] - g->value_ptr[part];
             double *d = s[c].d + v;
             *d = HUGE_VAL;
-            if (i < 0 || count == 0) continue;
-            *d = g->h * hdi_geo_nearest(value, count, phi[k * (int64_t)i + c]);
-            fine &= skip >> c & 1 || hdi_finite(*d);
+            if (!at || at[c].low > at[c].high) continue;
+            *d = phi[k * (int64_t)i + c];
+            *d = g->h * hdi_min(fabs(*d - at[c].low), fabs(*d - at[c].high));
+            fine &= hdi_finite(*d);
         }
     }
     return fine;
 }
 
-/* The mean of both borders: to u of the natural border, in x, adds that of the border held at zero, with the
- * right-hand side in y, which is overwritten. Twice the mean points the same way. A source on the border has
- * no heat then. g->active holds the fronts that the sources touch. */
-static void hdi_geo_add_cold(const hd_geodesic *g, int k, double *x, double *y) {
-    const int64_t size = g->border == HD_GEODESIC_BORDER_MEAN ? k * (int64_t)g->n_active : 0;
-    int64_t p;
-    int32_t i;
-    if (size == 0) return;
+/* u of k columns in x, with y for work. heat [n]: residuals; NULL: they are not asked for. span: see
+ * hdi_geo_load. For the mean of both borders u of the border held at zero is added: twice the mean points the
+ * same way. A source on the border has no heat then. */
+static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k,
+                         const hdi_geo_span *span, double *x, double *y, double *heat) {
+    const size_t size = (size_t)k * (size_t)g->n_active;
+    size_t p;
+    int32_t c, i;
+    memset(g->active, 0, (size_t)g->sym.n_super);
+    memset(x, 0, size * sizeof *x);
+    for (c = 0; c < n; c++) hdi_geo_load(g, s + c, k, span, x + c);
+    if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(y, x, size * sizeof *x);
+    hdi_geo_sweep(g, HDI_GEO_HEAT, k, x, NULL);
+    for (c = 0; c < n && heat; c++) {
+        memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
+        hdi_geo_load(g, s + c, 1, NULL, g->r);
+        heat[c] = hdi_geo_residual(g, 1, hdi_geo_column(g, k, x, c, g->x), g->r);
+    }
+    if (g->border != HD_GEODESIC_BORDER_MEAN) return;
     for (i = 0; i < g->n_active; i++)
         if (g->held[i]) memset(y + k * (int64_t)i, 0, (size_t)k * sizeof *y);
-    hdi_geo_sweep(g, &g->cold, k, y, NULL);
+    hdi_geo_sweep(g, HDI_GEO_COLD, k, y, NULL);
     for (p = 0; p < size; p++) x[p] += y[p];
 }
 
-/* u of k columns in x, with y for work. heat [n]: residuals; NULL: they are not asked for. */
-static void hdi_geo_heat(const hd_geodesic *g, const hdi_geo_source *s, int32_t n, int k, double *x,
-                         double *y, double *heat) {
-    int32_t c;
-    memset(g->active, 0, (size_t)g->sym.n_super);
-    memset(x, 0, (size_t)k * (size_t)g->n_active * sizeof *x);
-    for (c = 0; c < n; c++) hdi_geo_load(g, s + c, k, x + c);
-    if (g->border == HD_GEODESIC_BORDER_MEAN) memcpy(y, x, (size_t)k * (size_t)g->n_active * sizeof *x);
-    hdi_geo_sweep(g, &g->heat, k, x, NULL);
-    for (c = 0; c < n && heat; c++) {
-        memset(g->r, 0, (size_t)g->n_active * sizeof *g->r);
-        hdi_geo_load(g, s + c, 1, g->r);
-        heat[c] = hdi_geo_residual(g, 1, hdi_geo_column(g, k, x, c, g->x), g->r);
-    }
-    hdi_geo_add_cold(g, k, x, y);
-}
-
-/* phi is not the same at all vertices of a source. With u the heat of the source and v that of the values of
- * phi at its vertices, v/u is near each of them the value of phi there, since heat fades so fast. Distances
- * are measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x
- * and g->r are overwritten. */
+/* phi is not the same at all points of a source. With u the heat of the source and v that of the values of
+ * phi at its points, v/u is near each of them the value of phi there, since heat fades so fast. Distances are
+ * measured from that wherever the first stage knows u, |u| >= least. phi is in g->b, u in s->first; g->x and
+ * g->r are overwritten. */
 static void hdi_geo_own_source(hd_geodesic *g, const hdi_geo_source *s, double least) {
-    int32_t q, v, c, several = 0;
-    for (c = 0; c < g->n_components; c++)
-        several |= g->value_ptr[c + 1] > g->value_ptr[c] &&
-                   s->value[g->value_ptr[c + 1] - 1] > s->value[g->value_ptr[c]];
+    int32_t v, c, several = 0;
+    for (c = 0; c < g->n_components; c++) several |= g->span[c].low < g->span[c].high;
     if (!several) return;
-    memset(g->active, 0, (size_t)g->sym.n_super);
-    memset(g->x, 0, (size_t)g->n_active * sizeof *g->x);
-    memset(g->mark, 0, (size_t)g->n_active);
-    hdi_geo_load(g, s, 1, g->x);
-    for (q = 0; q < s->n; q++) {
-        const int32_t i = s->item[q].row[0];
-        if (s->item[q].n == 0) continue;
-        g->x[i] = g->b[i] - s->value[g->value_ptr[g->component[i]]];
-        g->mark[i] = 1;
-    }
-    memcpy(g->r, g->x, (size_t)g->n_active * sizeof *g->x);
-    hdi_geo_sweep(g, &g->heat, 1, g->x, NULL);
-    hdi_geo_add_cold(g, 1, g->x, g->r);
+    hdi_geo_heat(g, s, 1, 1, g->span, g->x, g->r, NULL);
     for (v = 0; v < g->n; v++) {
         const int32_t i = g->row[v];
-        const double *value, *end;
-        if (i < 0 || g->mark[i] || !(fabs(s->first[i]) >= least)) continue;
-        value = s->value + g->value_ptr[g->component[i]];
-        end = s->value + g->value_ptr[g->component[i] + 1];
-        if (value == end) continue;
-        s->d[v] = g->h * fabs(g->b[i] - value[0] -
-                              hdi_min(hdi_max(g->x[i] / s->first[i], 0), end[-1] - value[0]));
+        const hdi_geo_span *at = i < 0 ? NULL : g->span + g->component[i];
+        if (!at || at->low > at->high || !(fabs(s->first[i]) >= least)) continue;
+        s->d[v] = g->h * fabs(g->b[i] - at->low -
+                              hdi_min(hdi_max(g->x[i] / s->first[i], 0), at->high - at->low));
     }
 }
 
-/* Distances from phi, of n columns side by side. least: see hdi_geo_own_source; skip: see hdi_geo_measure. */
-static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t n, double least, int skip,
+/* Distances from phi, of n columns side by side. least: see hdi_geo_own_source. */
+static hd_status hdi_geo_answer(hd_geodesic *g, const hdi_geo_source *s, int32_t n, double least,
                                 hd_error *e) {
-    const int k = n > 1 ? HDI_GEO_WIDE : 1;
     int32_t i, c;
-    if (n == 1) hdi_geo_values(g, s, g->b);
-    if (!hdi_geo_measure(g, s, n, k, n > 1 ? g->wide_b : g->b, skip))
+    if (!hdi_geo_measure(g, s, n, n > 1 ? HDI_GEO_WIDE : 1, n > 1 ? g->wide_b : g->b))
         return hdi_fail(e, HD_ERR_BREAKDOWN, "geodesic: rounding leaves nothing of the answer: the mesh has "
                                              "faces that are too thin");
     if (s->first) hdi_geo_own_source(g, s, least);
-    for (c = 0; c < n && !s->near_by; c++)
+    for (c = 0; c < n && !s->home; c++)
         for (i = 0; i < s[c].n; i++) s[c].d[s[c].item[i].vertex] = 0;    /* those without mass too */
     for (i = 0; i < g->n && s->near_by; i++)
         if (g->row[i] >= 0 && s->near_by[g->row[i]] < HUGE_VAL) s->d[i] = g->h * s->near_by[g->row[i]];
@@ -23413,27 +23386,28 @@ static double hdi_geo_least(const hdi_geo_source *s, int k, const double *u) {
 }
 
 /* The distances of n columns, side by side if there are several: up to a batch. Of a batch the columns whose
- * heat fades are left out, and are bits of *faint. */
-static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t n, int *faint,
-                               hd_geodesic_report *rep, hd_error *e) {
+ * heat fades are computed again alone. */
+static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
+                               hd_error *e) {
     const int k = n > 1 ? HDI_GEO_WIDE : 1;
     const size_t size = (size_t)k * (size_t)g->n_active * sizeof(double);
     double *x = n > 1 ? g->wide_x : g->x, *b = n > 1 ? g->wide_b : g->b;
     double least[HDI_GEO_WIDE], heat[HDI_GEO_WIDE];
     int32_t c, n_stages = 1;
-    hdi_geo_heat(g, s, n, k, x, b, rep ? heat : NULL);
+    int faint;
+    hdi_geo_heat(g, s, n, k, NULL, x, b, rep ? heat : NULL);
     for (c = 0; c < k; c++) least[c] = c < n ? hdi_geo_least(s + c, k, x + c) : DBL_MIN;
     if (s->first) memcpy(s->first, x, size);
     memset(b, 0, size);
-    *faint = hdi_geo_divergence(g, k, x, least, NULL, s, b);
-    if (n == 1 && *faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
+    faint = hdi_geo_divergence(g, k, x, least, NULL, s->home ? s : NULL, b);
+    if (n == 1 && faint && hdi_geo_further(g, least[0], &n_stages, e) < 0) return e->status;
     if (rep) memcpy(x, b, size);
     for (c = 0; c < g->n_components; c++)
         memset(b + k * (int64_t)g->pin[c], 0, (size_t)k * sizeof *b);
-    hdi_geo_sweep(g, &g->poisson, k, b, NULL);
+    hdi_geo_sweep(g, HDI_GEO_POISSON, k, b, NULL);
     for (c = 0; c < n && rep; c++) {
         double *rhs = k > 1 ? g->r : g->x, distance;
-        if (k > 1 && *faint >> c & 1) continue;
+        if (k > 1 && faint >> c & 1) continue;
         (void)hdi_geo_column(g, k, x, c, rhs);
         distance = hdi_geo_residual(g, 0, hdi_geo_column(g, k, b, c, g->x), rhs);
         rep->residual_heat = hdi_max(rep->residual_heat, heat[c]);
@@ -23441,25 +23415,21 @@ static hd_status hdi_geo_solve(hd_geodesic *g, const hdi_geo_source *s, int32_t 
         rep->n_stages = hdi_high32(rep->n_stages, n_stages);
         if (!(heat[c] <= HDI_GEO_RESIDUAL && distance <= HDI_GEO_RESIDUAL)) rep->status = HD_WARN_ACCURACY;
     }
-    return hdi_geo_answer(g, s, n, least[0], *faint, e);
+    (void)hdi_geo_answer(g, s, n, least[0], e);
+    for (c = 0; c < n && n > 1 && e->status >= 0; c++)
+        if (faint >> c & 1) (void)hdi_geo_solve(g, s + c, 1, rep, e);
+    return e->status;
 }
 
-/* The distances of up to a batch of columns of one vertex each. Columns whose heat fades are computed again
- * alone. */
-static hd_status hdi_geo_batch(hd_geodesic *g, const hdi_geo_source *s, int32_t n, hd_geodesic_report *rep,
-                               hd_error *e) {
+/* The arrays of a batch. */
+static hd_status hdi_geo_widen(hd_geodesic *g, hd_error *e) {
     const uint64_t size = HDI_GEO_WIDE * (uint64_t)g->n_active;
-    int faint = 0, none;
-    int32_t c;
     if (!g->wide_x)
         g->wide_x = HDI_TAKE(hdi_geo_keep(g, e), double, 2 * size + hdi_sweep_size(&g->sym, 1, HDI_GEO_WIDE));
     if (!g->wide_x) return e->status;
     g->wide_b = g->wide_x + size;
     g->wide_work = g->wide_b + size;
-    if (hdi_geo_solve(g, s, n, &faint, rep, e) < 0) return e->status;
-    for (c = 0; c < n; c++)
-        if (faint >> c & 1 && hdi_geo_solve(g, s + c, 1, &none, rep, e) < 0) break;
-    return e->status;
+    return HD_OK;
 }
 
 /* Columns of distances, ldd apart, from sources that are checked. */
@@ -23469,7 +23439,6 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
     const int32_t n = from->count;
     hdi_geo_source s[HDI_GEO_WIDE];
     int32_t m, c, k;
-    int faint;
     for (m = 0; m < n && e->status >= 0; m += k) {
         hdi_scope scope = hdi_scope_begin(g->ctx, e);
         k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
@@ -23478,72 +23447,10 @@ static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, doubl
             if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
             s[c].d = D + (size_t)(m + c) * ldd;
         }
-        if (e->status >= 0 && k > 1) (void)hdi_geo_batch(g, s, k, rep, e);
-        else if (e->status >= 0) (void)hdi_geo_solve(g, s, 1, &faint, rep, e);
+        if (e->status >= 0 && (k == 1 || hdi_geo_widen(g, e) >= 0)) (void)hdi_geo_solve(g, s, k, rep, e);
         (void)hdi_scope_end(&scope);
     }
     return e->status;
-}
-
-/* ---- options and arguments ---- */
-
-#define HDI_LAMBDA_GEODESIC (1.0 / 6)    /* measured from 0.05 to 1 on spheres, planes and tubes */
-
-/* Checks the options, and resolves into in what they say about the faces. */
-static hd_status hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in,
-                               int32_t *neighbours, hd_error *e) {
-    const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
-    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
-    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
-                     o->t_in_h2, e);
-    hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
-               "geodesic: unknown mass", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
-    hdi_refuse(o->border < HD_GEODESIC_BORDER_NATURAL || o->border > HD_GEODESIC_BORDER_DIRICHLET,
-               "geodesic: unknown border", e);
-    hdi_intrinsic_opts(o->triangulation, o->mollify, in, e);
-    in->updatable = o->updatable;
-    in->split = poly && in->flips;
-    *neighbours = hdi_point_neighbours(o->neighbours, m, e);
-    hdi_refuse(!hdi_finite(o->stiffening) || !(o->stiffening >= 0 && o->stiffening <= 1e100),
-               "geodesic: stiffening is not between 0 and 1e100", e);
-    hdi_refuse(o->stiffening != 0 && (!poly || in->flips),
-               "geodesic: stiffening is for polygons that are not split", e);
-    hdi_refuse(points && o->triangulation != HD_TRIANGULATION_TUFTED,
-               "geodesic: points need the triangulation tufted; exponential weights have no gradient", e);
-    hdi_refuse(points && o->border != HD_GEODESIC_BORDER_NATURAL,
-               "geodesic: points cannot tell their border", e);
-    hdi_refuse(poly && !in->flips && o->mass != HD_GEODESIC_MASS_BARYCENTRIC,
-               "geodesic: Voronoi areas are of triangles, not of polygons", e);
-    hdi_refuse(m->lengths && o->updatable, "geodesic: a plan of lengths is not updatable", e);
-    hdi_refuse(o->updatable && (in->flips || poly),
-               "geodesic: only plans of triangles in space are updatable", e);
-    return e->status;
-}
-
-/* The plan of a mesh. */
-static hd_status hdi_geo_create(hd_geodesic **out, const hd_mesh *mesh, const hd_geodesic_opts *o,
-                                hdi_call *c) {
-    hdi_scope s;
-    hdi_input in;
-    hd_geodesic *g;
-    int32_t neighbours;
-    memset(&in, 0, sizeof in);
-    if (hdi_view_check(mesh, c->e) < 0 || hdi_geo_check(o, mesh, &in, &neighbours, c->e) < 0)
-        return c->e->status;
-    if (o->ordering == HD_ORDERING_OWN && hdi_order_check(o->perm, mesh->n, c->ctx, c->e) < 0)
-        return c->e->status;
-    g = (hd_geodesic *)hdi_alloc_zero(c->ctx, 1, sizeof *g, c->e);
-    if (!g) return c->e->status;
-    g->ctx = hdi_enter_keep(c, &g->context);
-    hdi_hold(g->ctx);
-    g->n = mesh->n;
-    s = hdi_scope_begin(g->ctx, c->e);
-    if (hdi_input_open(&in, mesh, o->stiffening != 0 ? o->stiffening : HDI_LAMBDA_GEODESIC, &s) >= 0)
-        (void)hdi_geo_make(g, &in, neighbours, o, c->e);
-    if (hdi_scope_end(&s) >= 0) *out = g;
-    else hdi_geo_free(g);
-    return c->e->status;
 }
 
 /* Checks the arguments of a query, and fills the report with what the plan says. */
@@ -23735,9 +23642,6 @@ HEATDIFF_API hd_status hd_laplacian_create(hd_laplacian **out, const hd_mesh *me
     lap = hdi_lap_new(&o, mesh ? mesh->n : 0, mesh ? hdi_lap_kind(mesh, &o) : o.kind, err, &c);
     if (!lap) return c.e->status;
     if (!out || !mesh) (void)hdi_missing(c.e);
-    else if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS)
-        (void)HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    else if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) (void)HDI_LEFT_OUT(c.e, POINTS, "points");
     else (void)hdi_lap_fill(lap, mesh, &o, c.e);
     return hdi_lap_end(out, lap, c.e);
 }
@@ -23900,13 +23804,11 @@ HEATDIFF_API hd_status hd_ldl_solve(hd_ldl *f, int32_t k, const double *b, size_
     ldb = ldb ? ldb : (size_t)f->n;
     ldx = ldx ? ldx : (size_t)f->n;
     if (hdi_ldl_leading(f, ldb, ldx, c.e) < 0 || hdi_ldl_room(f, 0, c.e) < 0) return c.e->status;
-    for (q = 0; q < k && b == x && ldb != ldx; q++) {
-        const size_t at = (size_t)(ldx > ldb ? k - 1 - q : q);   /* none is overwritten before it moves */
-        memmove(x + at * ldx, x + at * ldb, (size_t)f->n * sizeof *x);
+    for (q = 0; q < k; q += 8) {                 /* x may be b: none is overwritten before it is read */
+        const int32_t at = ldx > ldb ? (k - 1) / 8 * 8 - q : q;
+        hdi_ldl_solve(f, &f->real, hdi_low32(k - at, 8), b + (size_t)at * ldb, ldb, x + (size_t)at * ldx,
+                      ldx);
     }
-    if (b == x) ldb = ldx;
-    for (q = 0; q < k; q += 8)
-        hdi_ldl_solve(f, &f->real, k - q < 8 ? k - q : 8, b + (size_t)q * ldb, ldb, x + (size_t)q * ldx, ldx);
     return HD_OK;
 }
 
@@ -24179,6 +24081,7 @@ HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n
 HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
                                           const hd_geodesic_opts *opts, hd_error *err) {
     hd_geodesic_opts o;
+    hd_geodesic *g;
     hdi_call c;
     memset(&o, 0, sizeof o);
     if (opts) o = *opts;
@@ -24186,9 +24089,13 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
         return c.e->status;
     if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
     if (!out || !mesh) return hdi_missing(c.e);
-    if (!HDI_HAS_POLYGONS && mesh->shape == HD_POLYGONS) return HDI_LEFT_OUT(c.e, POLYGONS, "polygons");
-    if (!HDI_HAS_POINTS && mesh->shape == HD_POINTS) return HDI_LEFT_OUT(c.e, POINTS, "points");
-    return hdi_geo_create(out, mesh, &o, &c);
+    g = (hd_geodesic *)hdi_alloc_zero(c.ctx, 1, sizeof *g, c.e);
+    if (!g) return c.e->status;
+    g->ctx = hdi_enter_keep(&c, &g->context);
+    hdi_hold(g->ctx);
+    if (hdi_geo_make(g, mesh, &o, c.e) >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c.e->status;
 }
 
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
