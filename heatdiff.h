@@ -11764,9 +11764,8 @@ static double hdi_rational_eval(const hd_rational *set, double x) {
     double sum = set->a0;
     int32_t i;
     for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 theta = set->theta[i], a = set->a[i];
-        const double d = x - theta.re, unit = hdi_rat_count(set, i) / (d * d + theta.im * theta.im);
-        sum += unit * (a.re * d - a.im * theta.im);
+        const hd_c64 d = hdi_c(x - set->theta[i].re, set->theta[i].im);   /* conjugate of x - theta */
+        sum += hdi_rat_count(set, i) / hdi_cabs2(d) * hdi_cmul(set->a[i], d).re;
     }
     return sum;
 }
@@ -11845,10 +11844,8 @@ static void hdi_least_squares(double *A, int64_t rows, int64_t cols, double *b) 
 
 /* The error of a set is made small in the sense of least squares:
  *   sum over points k of u_k^2 (f_k - c(x_k))^2 -> min,   c(x) = a0 + sum a_i/(x - theta_i).
- * Poles that are not real count twice, by their real part. A weight of HUGE_VAL: there c is f. */
-
-/* The weight of a point where c is f, beside those of a column, which are near one. What errors elsewhere
- * could move is the square of its inverse. */
+ * Poles that are not real count twice, by their real part. Where the weight u is HDI_RESIDUES_EXACT, c is f:
+ * what errors elsewhere could move is the square of its inverse, for columns whose norm is one. */
 #define HDI_RESIDUES_EXACT 1e10
 
 static uint64_t hdi_residues_room(int32_t points, int32_t n_poles) {
@@ -11856,18 +11853,20 @@ static uint64_t hdi_residues_room(int32_t points, int32_t n_poles) {
     return ((uint64_t)points + cols) * (cols + 1) + cols;
 }
 
-/* A column [n]: of a0 where p is NULL, else of the real or the imaginary part of a pole's weight. Returns its
- * norm, without the points where c is f. */
+/* A column [n]: of a0 where p is NULL, else of the real or the imaginary part of a pole's weight. It is
+ * divided by its norm, without the points where c is f, which is returned. */
 static double hdi_residues_column(const double *x, const double *u, int64_t n, const hd_c64 *p, int im,
                                   double *c) {
     double sum = 0;
     int64_t i;
     for (i = 0; i < n; i++) {
         const double d = p ? x[i] - p->re : 0, v = p ? p->im : 0, unit = v != 0 ? 2 : 1;
-        c[i] = (hdi_finite(u[i]) ? u[i] : 1) * (!p ? 1 : unit * (im ? -v : d) / (d * d + v * v));
-        if (hdi_finite(u[i])) sum += c[i] * c[i];
+        c[i] = u[i] * (!p ? 1 : unit * (im ? -v : d) / (d * d + v * v));
+        if (u[i] != HDI_RESIDUES_EXACT) sum += c[i] * c[i];
     }
-    return sqrt(sum);
+    sum = sqrt(sum);
+    for (i = 0; i < n; i++) c[i] /= sum;
+    return sum;
 }
 
 /* Weights of the set's poles for n points x, weights u and values f; a0 too if there is to be one, else it
@@ -11883,16 +11882,14 @@ static void hdi_residues_fit(hd_rational *set, int64_t n, const double *x, const
     b = A + rows * cols;
     scale = b + rows;
     memset(A, 0, (size_t)(rows * (cols + 1)) * sizeof *A);
-    for (i = 0; i < set->n_poles; i++)
-        for (im = 0; im < (set->theta[i].im != 0 ? 2 : 1); im++, c++)
-            scale[c] = hdi_residues_column(x, u, n, set->theta + i, im, A + c * rows);
-    if (constant) scale[c] = hdi_residues_column(x, u, n, NULL, 0, A + c * rows);
-    for (c = 0; c < cols; c++) {
-        double *column = A + c * rows;
-        for (r = 0; r < n; r++) column[r] *= (hdi_finite(u[r]) ? 1 : HDI_RESIDUES_EXACT) / scale[c];
-        column[n + c] = 2 * DBL_EPSILON;
+    for (i = 0; c < cols; i++) {                 /* a0 comes last */
+        const hd_c64 *p = i < set->n_poles ? set->theta + i : NULL;
+        for (im = 0; im < (p && p->im != 0 ? 2 : 1); im++, c++) {
+            scale[c] = hdi_residues_column(x, u, n, p, im, A + c * rows);
+            A[c * rows + n + c] = 2 * DBL_EPSILON;
+        }
     }
-    for (r = 0; r < n; r++) b[r] = (hdi_finite(u[r]) ? u[r] : HDI_RESIDUES_EXACT) * f[r];
+    for (r = 0; r < n; r++) b[r] = u[r] * f[r];
     hdi_least_squares(A, rows, cols, b);
     for (c = 0; c < cols; c++) b[c] /= scale[c];
     set->a0 = constant ? b[cols - 1] : 0;
@@ -11952,10 +11949,6 @@ static const double hdi_shared_table[] = {
       0.05304, 0.01792, 0.04395, 0.05545, 0.0263, 0.09884, 0.007181, 0.1541, -0.009785, 0.2431,
       -0.05005, 0.409, -0.1378, 0.6999, -0.3297, 1.18, -0.7484, 1.929, -1.612, 3.042, -3.3, 4.558,
       -6.531, 6.474,
-    560, 12, 6.97e-06,
-      0.009239, 0.003264, 0.007343, 0.01017, 0.003725, 0.01847, 0.002201, 0.03331, -0.0003453, 0.06701,
-      -0.007425, 0.1392, -0.02865, 0.2831, -0.0997, 0.5575, -0.3101, 1.056, -0.8326, 1.917, -2.087, 3.259,
-      -4.859, 5.062,
     18, 16, 7.67e-12,
       0.439899, 0.0881315, 0.409856, 0.266677, 0.349438, 0.452376, 0.258124, 0.651104, 0.135528, 0.870562,
       -0.0178681, 1.12238, -0.201659, 1.42683, -0.422791, 1.81745, -0.709483, 2.349, -1.13855, 3.05825,
@@ -12178,7 +12171,7 @@ static void hdi_shared_fit(hd_rational *set, double tau, double *room) {
         f[r] = exp(tau * x[r]);
         w[r] = 1;
     }
-    w[0] = HUGE_VAL;
+    w[0] = HDI_RESIDUES_EXACT;
     for (step = 0; step <= HDI_SHARED_LAWSON; step++) {
         double worst = 0, top = 0;
         for (r = 0; r < n; r++) u[r] = w[r] * (1 - tau * x[r]);
@@ -12306,24 +12299,24 @@ static double hdi_filter_value(const hd_filter *f, double lambda) {
 
 /* Checks parameters and options. */
 static hd_status hdi_filter_check(const hd_filter *f, double lambda_max, hd_error *e) {
-    const int wave = f->kind == HD_FILTER_WAVE, two = wave || f->kind == HD_FILTER_FRACTIONAL;
-    const char *text = NULL;
-    if (f->begin_zero != 0 || f->end_zero != 0) text = "filter: not cleared before use";
-    else if (f->kind < HD_FILTER_OWN || f->kind > HD_FILTER_BIHARMONIC) text = "filter: unknown kind";
-    else if (f->kind == HD_FILTER_OWN && !f->f) text = "filter: a kind or a function is missing";
-    else if (!hdi_finite(f->a) || !hdi_finite(f->b)) text = "filter: a or b is not finite";
-    else if (f->kind != HD_FILTER_OWN && !wave && !(f->a > 0)) text = "filter: a is not positive";
-    else if (two && !(f->b > 0)) text = "filter: b is not positive";
-    else if (f->kind == HD_FILTER_BAND && !(f->b > f->a)) text = "filter: the band ends before it begins";
-    else if (!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1) text = "filter: tol is not in [0, 1)";
-    else if (f->max_degree < 0 || f->max_degree > HD_MAX_POLES)
-        text = "filter: max_degree is not in 0..HD_MAX_POLES";
-    else if (!hdi_finite(f->lambda_min) || f->lambda_min < 0) text = "filter: lambda_min is negative";
-    else if (!hdi_finite(lambda_max) || !(lambda_max > 0) || !(f->lambda_min < lambda_max))
-        text = "filter: lambda_max is unknown, not positive, or not above lambda_min";
-    else if (!hdi_finite(f->weight * lambda_max) || f->weight < 0)
-        text = "filter: weight is negative, or not finite times lambda_max";
-    return text ? hdi_fail(e, HD_ERR_ARGUMENT, text) : HD_OK;
+    const int own = f->kind == HD_FILTER_OWN, wave = f->kind == HD_FILTER_WAVE;
+    const int two = wave || f->kind == HD_FILTER_FRACTIONAL;
+    hdi_refuse(!HDI_CLEARED(f), "filter: not cleared before use", e);
+    hdi_refuse(f->kind < HD_FILTER_OWN || f->kind > HD_FILTER_BIHARMONIC, "filter: unknown kind", e);
+    hdi_refuse(own && !f->f, "filter: a kind or a function is missing", e);
+    hdi_refuse(!hdi_finite(f->a) || !hdi_finite(f->b), "filter: a or b is not finite", e);
+    hdi_refuse(!own && !wave && !(f->a > 0), "filter: a is not positive", e);
+    hdi_refuse(two && !(f->b > 0), "filter: b is not positive", e);
+    hdi_refuse(f->kind == HD_FILTER_BAND && !(f->b > f->a), "filter: the band ends before it begins", e);
+    hdi_refuse(!hdi_finite(f->tol) || f->tol < 0 || f->tol >= 1, "filter: tol is not in [0, 1)", e);
+    hdi_refuse(f->max_degree < 0 || f->max_degree > HD_MAX_POLES,
+               "filter: max_degree is not in 0..HD_MAX_POLES", e);
+    hdi_refuse(!hdi_finite(f->lambda_min) || f->lambda_min < 0, "filter: lambda_min is negative", e);
+    hdi_refuse(!hdi_finite(lambda_max) || !(lambda_max > 0) || !(f->lambda_min < lambda_max),
+               "filter: lambda_max is unknown, not positive, or not above lambda_min", e);
+    hdi_refuse(!hdi_finite(f->weight * lambda_max) || f->weight < 0,
+               "filter: weight is negative, or not finite times lambda_max", e);
+    return e->status;
 }
 
 /* A fit under way. Values are relative to the largest of each filter. */
@@ -13893,18 +13886,6 @@ static int hdi_lane_negative(const hd_laplacian *lap, const hdi_lane *lane) {
 /* Squares of a right-hand side whose largest part is below this underflow, or its residuals' do. */
 #define HDI_LANE_LEAST 1e-140
 
-/* The right-hand side without its constants, complex. Returns 0 where it vanishes. */
-static int hdi_lane_rhs(hdi_lane *lane, const hd_laplacian *lap) {
-    double most = 0;
-    int32_t i;
-    hdi_lane_deflate(lane, lap);
-    for (i = 0; i < lap->n_active; i++) {
-        lane->b[i] = hdi_c(lane->rhs[i], 0);
-        most = hdi_max(most, fabs(lane->rhs[i]));
-    }
-    return most == 0 || most >= HDI_LANE_LEAST;
-}
-
 /* Ends an answer by poles: constants, norms, bounds. dense: see hdi_conserve_off. */
 static void hdi_lane_finish(const hd_laplacian *lap, const hd_rational *set, double drift_t, int dense,
                             hdi_lane *lane) {
@@ -13917,16 +13898,20 @@ static void hdi_lane_finish(const hd_laplacian *lap, const hd_rational *set, dou
 
 /* K_t f through a pole set. The tolerance is relative to the answer, which is not known yet. A first round
  * aims at the tolerance relative to f, which is never too strict because |K_t f|_B <= |f|_B (times the
- * largest value of a filter). The next rounds
- * go on from there, relative to the answer that came out. */
+ * largest value of a filter). The next rounds go on from there, relative to the answer that came out. */
 static hd_status hdi_family_run(const hdi_family *fam, double tol, double drift_t, hdi_lane *lane,
                                 const hdi_watch *watch, hd_error *e) {
     const hd_laplacian *lap = fam->lap;
-    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room = 0;
+    double aim = tol * hdi_set_largest(&fam->set) * lane->f_norm, room = 0, most = 0;
     hdi_watch part = *watch;
     hd_status status = HD_OK;
-    int32_t round;
-    if (!hdi_lane_rhs(lane, lap))
+    int32_t round, i;
+    hdi_lane_deflate(lane, lap);
+    for (i = 0; i < lap->n_active; i++) {
+        lane->b[i] = hdi_c(lane->rhs[i], 0);
+        most = hdi_max(most, fabs(lane->rhs[i]));
+    }
+    if (most > 0 && most < HDI_LANE_LEAST)
         return hdi_fail(e, HD_ERR_BREAKDOWN,
                         "the iteration broke down: masses or values differ so much that squares underflow");
     for (round = 0; round < 6; round++) {
@@ -16212,7 +16197,7 @@ static double hdi_spec_rest(const hdi_spec *s, int32_t n) {
 static hd_status hdi_spec_raise(hdi_spec *s, int32_t n, hd_error *e) {
     const double sigma = s->sigma, off = s->off, last = n > 0 ? s->pair[n - 1].value : s->edge;
     const double gap = n < s->found && s->found < s->n ? s->pair[n].value - last : 0;
-    if (!(sigma - last < gap / 2) || hdi_spec_shift(s, last + 0.8 * gap, e) < 0 ||
+    if (!(gap > 0 && sigma - last < gap / 2) || hdi_spec_shift(s, last + 0.8 * gap, e) < 0 ||
         (s->negative == n && hdi_spec_sure(s))) return e->status;
     s->sigma = sigma;
     s->off = off;
