@@ -17477,6 +17477,21 @@ static double hdi_lane_terms(const hdi_heat_call *h, const hdi_terms *c, double 
     return norm;
 }
 
+/* rhs = B f for the f of a source. */
+static void hdi_lane_terms_mass(const hdi_heat_call *h, const hdi_terms *c, hdi_lane *lane) {
+    const hd_laplacian *lap = h->lap;
+    int32_t q;
+    int64_t p;
+    memset(lane->rhs, 0, (size_t)lap->n_active * sizeof *lane->rhs);
+    for (q = 0; q < c->n; q++) {
+        const int32_t row = hdi_call_row(h, hdi_terms_at(c, q));
+        if (row < 0) continue;
+        if (!lap->B) lane->rhs[row] = lap->mass[row] * lane->f[row];
+        for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->B; p++)
+            lane->rhs[lap->L.col[p]] += lap->B[p] * lane->f[row];
+    }
+}
+
 /* A field into x by rows, scaled by a power of two so that its values are near one. */
 static void hdi_lane_field(const hdi_heat_call *h, const double *f, hdi_lane *lane, double *x) {
     const int32_t n = h->lap->n_active;
@@ -17519,7 +17534,8 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
         return HD_OK;
     }
     if (given) {
-        hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        if (fields) hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
+        else hdi_lane_terms_mass(h, &c, lane);
         if (fields || c.weight) lane->rhs_off = hdi_lane_rhs_off(lap, lane->f);
         if (c.weight) sums = ((double)lap->n_active / 2 + 4) * DBL_EPSILON;
     } else if (hdi_mass_solve(lap, HDI_MASS_STOP, lane->rhs, lane->f, lane->tmp, h->e) < 0) {
@@ -22603,20 +22619,17 @@ static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
 /* Sorts the faces that have an area by the corner that is eliminated first. Passes over them then run through
  * the vectors once. */
 static hd_status hdi_geo_order(hd_geodesic *g, const hdi_mesh *mesh, hdi_scope *own, hdi_scope *s) {
-    uint64_t *key = HDI_TAKE(s, uint64_t, mesh->m);
-    int32_t f;
+    int32_t *first = HDI_TAKE(s, int32_t, mesh->m), *ptr = HDI_TAKE(s, int32_t, (int64_t)g->n_active + 1), f;
     int64_t c;
     g->from = HDI_TAKE(g->lap ? own : s, int32_t, mesh->m);
-    for (f = 0; f < mesh->m && own->e->status >= 0; f++) {
-        int32_t first = g->n_active;
-        if (!(mesh->area[f] > 0)) continue;
-        for (c = hdi_face_begin(mesh, f); c < hdi_face_begin(mesh, f + 1); c++)
-            first = hdi_low32(first, g->row[mesh->tri[c]]);
-        key[g->n_faces++] = (uint64_t)first << 32 | (uint64_t)f;
-    }
     if (own->e->status < 0) return own->e->status;
-    hdi_sort_keys(key, g->n_faces);
-    for (f = 0; f < g->n_faces; f++) g->from[f] = (int32_t)(key[f] & INT32_MAX);
+    for (f = 0; f < mesh->m; f++) {
+        first[f] = mesh->area[f] > 0 ? g->n_active : -1;
+        for (c = hdi_face_begin(mesh, f); c < hdi_face_begin(mesh, f + 1) && first[f] > 0; c++)
+            first[f] = hdi_low32(first[f], g->row[mesh->tri[c]]);
+    }
+    hdi_group(first, mesh->m, g->n_active, ptr, g->from);
+    g->n_faces = ptr[g->n_active];
     return HD_OK;
 }
 
