@@ -1169,7 +1169,7 @@ HEATDIFF_API void hd_geodesic_free(hd_geodesic *g);
  *          a report is given
  * Cost     two solves and two passes over the faces for each source; a solve more with several points in a
  *          component, and for every 450 edges or so at t = h^2; two passes more with a report. Eight vertices
- *          together are three times as fast. Calls with no more vertices than before allocate nothing */
+ *          together are three times as fast. The plan keeps the room of solves for later ones */
 HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
                                             size_t ldd, hd_geodesic_report *report, hd_error *err);
 
@@ -20167,6 +20167,7 @@ typedef struct hdi_diagonal {
     const hd_rational *set;      /* NULL: exact */
     double *value, *g, *spread;  /* [n] */
     double sure;                 /* 1, or infinite where g is no bound */
+    double slack;                /* by which g is multiplied, and columns of it have to be */
     double left_out;             /* times spread, an error besides: a0 B^-1 of a full B, not at hand */
 } hdi_diagonal;
 
@@ -20218,11 +20219,12 @@ static void hdi_diagonal_read(const hd_heat *heat, const hdi_inverses *x, int32_
     d->full = lap->B && d->mass == 1;
     d->left_out = lap->B && d->mass == 0 ? fabs(a0) : 0;
     d->sure = sure ? 1 : HUGE_VAL;
+    d->slack = sure ? x->slack[q] : 1;
     if (d->full) hdi_operator_diagonal(m, a0, k, d->value);
     for (i = 0; i < m->sym.n; i++) {
         const int64_t at = x->place ? x->place[i] : i;
         const double b = lap->b_diag[i], mass = forms ? lap->mass[i] * lap->mass[i] : 1;
-        const double bound = hdi_max(g[at], mass * hdi_constant_part(lap, i)) * (sure ? x->slack[q] : 1);
+        const double bound = hdi_max(g[at], mass * hdi_constant_part(lap, i)) * d->slack;
         d->spread[i] = d->mass == 0 ? hdi_inverse_mass(lap, i) : d->mass == 1 ? hdi_ratio_root(lap) : b;
         d->g[i] = d->full ? sqrt(bound * b) : forms ? bound : hdi_by_mass(bound, b, d->mass);
         if (forms) d->value[i] = k[at] + a0 * b;
@@ -21653,7 +21655,7 @@ static hdi_metric_end hdi_metric_source(const hdi_metric *x, const hdi_terms *s,
         by_b += fabs(w) * sqrt(x->f.spread[r]);
         size += fabs(w * u[r]);
         end.f += w * u[r];
-        if (g) end.g += w * g[r];
+        if (g) end.g += x->f.slack * (w * g[r]);
     }
     if (!g) end.g = by_m * by_m;
     end.spread = by_b * by_b;
@@ -21666,7 +21668,8 @@ static hdi_metric_end hdi_metric_source(const hdi_metric *x, const hdi_terms *s,
 static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                   const double *g_ab) {
     const double root = sqrt(hdi_max(0, a->g)) + sqrt(hdi_max(0, b->g)), relative = x->rounding[x->q];
-    const double wide = sqrt(a->spread) + sqrt(b->spread), other = g_ab ? a->g + b->g - 2 * *g_ab : HUGE_VAL;
+    const double wide = sqrt(a->spread) + sqrt(b->spread);
+    const double other = g_ab ? a->g + b->g - 2 * x->f.slack * *g_ab : HUGE_VAL;
     const double off = (relative + 8 * DBL_EPSILON) * (fabs(a->g) + fabs(b->g));
     return hdi_diagonal_off(&x->f, hdi_min(root * root, hdi_max(0, other) + off), wide * wide);
 }
