@@ -17196,6 +17196,7 @@ typedef struct hdi_heat_call {
     int32_t n_times;
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
+    double least;                /* seconds of the best method, while their costs are compared */
     int32_t not_local;           /* balls have been tried, and did not serve */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
@@ -17908,7 +17909,7 @@ static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
 
 /* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
  * preconditioners, or bases. */
-static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     const hd_laplacian *lap = heat->source;
@@ -17920,7 +17921,6 @@ static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, double least, hd_cost 
                                                 lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
                                                 lanczos ? 0 : poles);
     int32_t q;
-    (void)least;
     c->possible = 1;
     for (q = 0; q < h->n_times; q++)
         hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, k, c);
@@ -18061,9 +18061,8 @@ static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *s
 }
 
 /* The cost of fields and columns at the times of the call. */
-static void hdi_direct_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static void hdi_direct_cost(hdi_heat_call *h, hd_cost *c) {
     hd_rational set;
-    (void)least;
     if (hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return;
     hdi_direct_set(h, &set, HDI_AFTER_BOUND, 0, h->ask.k, 0, c);
     c->flops *= h->n_times;
@@ -18244,7 +18243,7 @@ static hdi_elim *hdi_heat_analysis(const hdi_heat_call *h) {
     return h->method == HD_METHOD_KRYLOV ? hdi_krylov_elim(h) : &h->heat->elim;
 }
 
-static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c) {
+static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
     const hdi_fill f = hdi_heat_fill(heat, m);
@@ -18255,7 +18254,6 @@ static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, double least, hd_cost *c)
     const double steps = h->ask.k * w.steps;
     /* more than expected, to be safe */
     const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
-    (void)least;
     if (heat->poles_asked) return;
     c->possible = 1;
     hdi_fill_cost(f, 1, w.n - ready, steps, wide > 1, c);
@@ -18930,13 +18928,13 @@ static int hdi_local_can(const hdi_heat_call *h) {
             (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
 
-/* As many balls as items, each like the first; all of the mesh for fields that are not known. least: seconds
- * of the best other method, of which auto spares a small part to look. */
-static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) {
+/* As many balls as items, each like the first; all of the mesh for fields that are not known. Of the seconds
+ * of the best other method auto spares a small part to look. */
+static HDI_COLD void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_laplacian *lap = h->heat->source;
     const hd_rational *set = h->heat->opts.rational;
     const int asked = h->heat->opts.method == HD_METHOD_LOCAL;
-    const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * least);
+    const double room = hdi_min(lap->n_active / 4.0, HDI_LOCAL_SPARE / HDI_LOCAL_LOOK * h->least);
     const int32_t most = asked ? lap->n_active : (int32_t)room;
     hdi_local *l;
     hdi_fill f;
@@ -18959,10 +18957,9 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, double least, hd_cost *c) 
 
 /* ---- choice of the method ---- */
 
-/* A method: what it would take, with c->possible = 0 where it cannot serve, and how it answers. least: the
- * seconds of the best one so far. */
+/* A method: what it would take, with c->possible = 0 where it cannot serve, and how it answers. */
 typedef struct hdi_engine {
-    void (*cost)(hdi_heat_call *h, double least, hd_cost *c);
+    void (*cost)(hdi_heat_call *h, hd_cost *c);
     hd_status (*run)(hdi_heat_call *h);
     const char *reason;          /* for auto to take it */
 } hdi_engine;
@@ -18982,13 +18979,13 @@ static const hdi_engine hdi_engines[HD_METHOD_LOCAL + 1] = {
 /* What each method would take, in by [HD_METHOD_LOCAL + 1]. h->t is the last of its times. */
 static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
     const int last = h->heat->iterations_asked ? HD_METHOD_ITERATIVE : HD_METHOD_LOCAL;
-    double least = HUGE_VAL;
     int q;
+    h->least = HUGE_VAL;
     memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
     for (q = HD_METHOD_ITERATIVE; q <= last && h->e->status >= 0; q++) {
-        if (hdi_engines[q].cost) hdi_engines[q].cost(h, least, by + q);
+        if (hdi_engines[q].cost) hdi_engines[q].cost(h, by + q);
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
-        if (by[q].possible) least = hdi_min(least, by[q].seconds);
+        if (by[q].possible) h->least = hdi_min(h->least, by[q].seconds);
     }
 }
 
