@@ -22178,7 +22178,7 @@ typedef struct hdi_estimate {
 
 /* Finds what is known of a query. Those for distances are in hdi_distance_rows. */
 static void hdi_estimate_find(hdi_estimate *x, hd_query query) {
-    static const struct { hd_query query; hdi_by by; int32_t mass; } rows[] = {
+    static const struct { hd_query query; hdi_by by; int32_t mass; } hdi_queries[] = {
         {HD_QUERY_FIELDS, HDI_BY_SOLVES, 0},
         {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 0},
         {HD_QUERY_PAIRS, HDI_BY_SOLVES, 0},
@@ -22188,10 +22188,10 @@ static void hdi_estimate_find(hdi_estimate *x, hd_query query) {
         {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 0}
     };
     size_t q;
-    for (q = 0; q < sizeof rows / sizeof *rows; q++) {
-        if (rows[q].query != query) continue;
-        x->by = rows[q].by;
-        x->mass = rows[q].mass;
+    for (q = 0; q < sizeof hdi_queries / sizeof *hdi_queries; q++) {
+        if (hdi_queries[q].query != query) continue;
+        x->by = hdi_queries[q].by;
+        x->mass = hdi_queries[q].mass;
     }
     if (query == HD_QUERY_PAIRS) x->of.kind = hdi_distance_of(HD_DISTANCE_CLASSICAL);
     for (q = 0; q < HDI_DISTANCES; q++) {
@@ -23271,10 +23271,10 @@ static void hdi_geo_load(const hd_geodesic *g, const hdi_geo_source *s, int k, c
  * distances there. */
 static void hdi_geo_values(const hd_geodesic *g, const hdi_geo_source *s, int k, const double *phi,
                            hdi_geo_span *span) {
-    const hdi_geo_span none = {HUGE_VAL, -HUGE_VAL};
+    const hdi_geo_span hdi_none = {HUGE_VAL, -HUGE_VAL};
     double sum = 0, length = 0;
     int32_t q, c;
-    for (c = 0; c < g->n_components; c++) span[k * (int64_t)c] = none;
+    for (c = 0; c < g->n_components; c++) span[k * (int64_t)c] = hdi_none;
     for (q = 0; q < s->n; q++) {
         hdi_geo_item *p = s->item + q;
         hdi_geo_span *to = span + k * (int64_t)g->component[p->row[0]];
@@ -23286,7 +23286,7 @@ static void hdi_geo_values(const hd_geodesic *g, const hdi_geo_source *s, int k,
         }
         sum += p->length * own;
         length += p->length;
-        if (s->curve) *to = none;                /* the last mean, of all, remains */
+        if (s->curve) *to = hdi_none;            /* the last mean, of all, remains */
         p->value = s->curve && length > 0 ? sum / length : own;
         to->low = hdi_min(to->low, p->value);
         to->high = hdi_max(to->high, p->value);
