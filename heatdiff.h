@@ -21824,8 +21824,8 @@ static void hdi_distance_task(hdi_distance_query *to, hdi_heat_call *h, int32_t 
     const double many = kind->many && k >= HDI_LANES_BATCH ? HDI_MODES_MANY * pow(span, 1.2) : 0;
     memset(&to->task, 0, sizeof to->task);
     to->task.h = h;
-    to->task.pairs = HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
-    to->task.poles = hdi_distance_by_poles;
+    to->task.pairs = HDI_HAS_DIFFUSION && HDI_HAS_MODES ? hdi_distance_by_pairs : NULL;
+    to->task.poles = HDI_HAS_DIFFUSION ? hdi_distance_by_poles : NULL;
     to->group = hdi_low32(k, HDI_LANES);
     to->highest = kind->highest;
     to->local = NULL;

@@ -11,7 +11,7 @@ import sys
 
 CHECKED = {     # sha256 of script and table
     "poles.py": "2bdf0e3becf82ed93843d82556e237ddaa0b1d9d04f5d0df6af63263d6a6700e",
-    "shared_poles.py": "f8ff4920b59c82906bf9f656db776cd68ca2f91a9872dc169953f2c00edafb93",
+    "shared_poles.py": "1864769175aea87641e89fe3128e310baea91f1b97fb6c3eba37dbcb6c986b10",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 
