@@ -16637,10 +16637,9 @@ static void hdi_spec_sum_errors(hdi_spec_sums *a) {
 
 /* The source's entries in the vectors, and its norms, by the triangle inequality. */
 static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
-    const hdi_share none = {0, 0, 0, 0, 0};
     int32_t q, i;
     double y;
-    a->from = none;
+    memset(&a->from, 0, sizeof a->from);
     a->sums_off = hdi_high32(from->n - 1, 0) * DBL_EPSILON;
     memset(a->x, 0, (size_t)a->of->s.count * sizeof *a->x);
     for (i = 0; i < from->n; i++) {
@@ -17656,6 +17655,7 @@ static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, i
     const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
     hd_heat *heat = h->heat;
     h->n_lanes = hdi_low32(h->ask.k, most);
+    /* sums over components take the lane's room for these, which is not in use yet */
     if (hdi_heat_make_lanes(heat, h->n_lanes, room, h->e) >= 0 && heat->drift < 0)
         heat->drift = hdi_heat_drift(heat->source, (hdi_sum *)(void *)heat->lane->target) / heat->scale;
     return h->e->status;
