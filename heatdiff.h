@@ -10292,6 +10292,7 @@ typedef struct hdi_inverse {
     const double *coef;          /* [n_sets][width] */
     int32_t n_sets;
     hdi_wanted wanted;
+    const char *active;          /* [n_super] 0: nothing is wanted of a front and of those below; NULL: all */
     const hdi_forms *forms;
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
@@ -10451,6 +10452,9 @@ static void hdi_inverse_rows(const hdi_front *w, int64_t r0, int64_t r1, double 
         }
     }
 }
+
+/* Is front v inverted? */
+static int hdi_inverse_works(const hdi_inverse *z, int32_t v) { return !z->active || z->active[v]; }
 
 /* Columns [r0,r1) of child c's Z22, out of the finished front. */
 static void hdi_inverse_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r1) {
@@ -10793,7 +10797,7 @@ static int hdi_inverse_next(hdi_front *w, const void *arg) {
     const int64_t from = w->stage == HDI_INVERSE_FORMS ? w->end : 0;
     int64_t rows = 0;
     int32_t k;
-    if (w->stage == HDI_INVERSE_CHILD) return 0;
+    if (w->stage == HDI_INVERSE_CHILD || !hdi_inverse_works(z, w->v)) return 0;
     if (w->stage == 0 || (w->stage == HDI_INVERSE_CORNER && w->k0 > 0)) {
         w->k1 = w->k0;
         w->k0 = (w->k1 - 1) / HDI_PANEL * HDI_PANEL;
@@ -10827,7 +10831,8 @@ static int hdi_inverse_part(const void *arg, const hdi_front *w, int64_t r0, int
     else if (w->stage == HDI_INVERSE_EMIT) hdi_inverse_emit(z, w);
     else for (; r1 > 0; k++) {
         const int64_t u = hdi_front_below(s, s->kid[k]);
-        if (r0 < u) hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
+        if (r0 < u && hdi_inverse_works(z, s->kid[k]))
+            hdi_inverse_child(w, s->kid[k], hdi_most(r0, 0), hdi_least(r1, u));
         r0 -= u;
         r1 -= u;
     }
@@ -12849,21 +12854,31 @@ static void hdi_bound_judge(double bound, hd_report *rep) {
     if (!(bound <= HDI_BOUND_USEFUL) && rep->status == HD_OK) rep->status = HD_WARN_ACCURACY;
 }
 
-/* Enters a ledger into a report. The report keeps the worst of all its ledgers. */
+/* The report keeps the worst of each part, of their sum, and of how they are known. */
+static void hdi_report_worst(hd_report *rep, hdi_parts part, double bound, hdi_parts evidence) {
+    rep->error_rational = hdi_max(rep->error_rational, part.rational);
+    rep->error_solver = hdi_max(rep->error_solver, part.solver);
+    rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
+    rep->error_local = hdi_max(rep->error_local, part.local);
+    rep->error_bound = hdi_max(rep->error_bound, bound);
+    hdi_evidence_worst(&rep->evidence_rational, evidence.rational);
+    hdi_evidence_worst(&rep->evidence_solver, evidence.solver);
+    hdi_evidence_worst(&rep->evidence_rounding, evidence.rounding);
+    hdi_evidence_worst(&rep->evidence_local, evidence.local);
+}
+
+static hdi_parts hdi_report_parts(const hd_report *r) {
+    const hdi_parts part = {r->error_rational, r->error_solver, r->error_rounding, r->error_local};
+    return part;
+}
+
+/* Enters a ledger into a report. */
 static void hdi_ledger_close(const hdi_ledger *l, hd_report *rep) {
     const hdi_parts part = hdi_parts_scale(hdi_quotient(1, l->largest), l->off);   /* of the largest value */
     const double total = hdi_parts_sum(&part);
     if (l->n_values == 0) return;
     if (l->lost) hdi_fail(&rep->error, HD_ERR_BREAKDOWN, "heat: an answer leaves the range of doubles");
-    rep->error_rational = hdi_max(rep->error_rational, part.rational);
-    rep->error_solver = hdi_max(rep->error_solver, part.solver);
-    rep->error_rounding = hdi_max(rep->error_rounding, part.rounding);
-    rep->error_local = hdi_max(rep->error_local, part.local);
-    rep->error_bound = hdi_max(rep->error_bound, total);
-    hdi_evidence_worst(&rep->evidence_rational, l->evidence.rational);
-    hdi_evidence_worst(&rep->evidence_solver, l->evidence.solver);
-    hdi_evidence_worst(&rep->evidence_rounding, l->evidence.rounding);
-    hdi_evidence_worst(&rep->evidence_local, l->evidence.local);
+    hdi_report_worst(rep, part, total, l->evidence);
     if (hdi_finite(l->smallest))
         rep->smallest = rep->smallest > 0 ? hdi_min(rep->smallest, l->smallest) : l->smallest;
     if (l->relative >= 0 && rep->error_relative < l->relative) rep->error_relative = l->relative;
@@ -12883,11 +12898,14 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
     return 0;
 }
 
-/* The sum of a row of B, without signs. */
-static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
-    double sum = lap->B ? 0 : lap->b_diag[i];
+/* sum_j (l |L_ij| + b |B_ij|) |x_j| of row i. x NULL: ones. */
+static double hdi_row_size(const hd_laplacian *lap, int32_t i, double l, double b, const double *x) {
+    double sum = lap->B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
     int64_t p;
-    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) sum += fabs(lap->B[p]);
+    for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+        const double m = l * fabs(lap->L.val[p]) + (lap->B ? b * fabs(lap->B[p]) : 0);
+        sum += x ? hdi_min(m, 1e140) * fabs(x[lap->L.col[p]]) : m;
+    }
     return sum;
 }
 
@@ -12900,15 +12918,10 @@ static double hdi_mass_row(const hd_laplacian *lap, int32_t i) {
 
 static void hdi_noise_weights(const hd_laplacian *lap, double t, double theta, double *noise, double *work) {
     int32_t i, second;
-    int64_t p;
     for (second = 0; second < 2; second++) {     /* M times ones, then times the weights of its rows */
         for (i = 0; i < lap->n_active; i++) {
             const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON / 2;
-            double sum = lap->B ? 0 : theta * lap->mass[i] * (second ? work[i] : 1);
-            for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-                const double m = t * fabs(lap->L.val[p]) + (lap->B ? theta * fabs(lap->B[p]) : 0);
-                sum += second ? hdi_min(m, 1e140) * work[lap->L.col[p]] : m;
-            }
+            const double sum = hdi_row_size(lap, i, t, theta, second ? work : NULL);
             if (second) noise[i] = hdi_min(sum, 1e300);
             else work[i] = hdi_min(c * c * (sum / lap->b_diag[i]), 1e150);   /* beyond, no digit is left */
         }
@@ -13938,14 +13951,14 @@ typedef struct hdi_elim_sums {
     int32_t n_sets;
     const hd_c64 *weight;        /* [n_sets][n_poles] */
     hdi_wanted wanted;
+    const char *active;          /* see hdi_inverse */
     double *values;
     int64_t stride;
 } hdi_elim_sums;
 
-/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole.
- * Forms are of the source's B, and their coefficients make up for its scale. */
-static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums,
-                                  hd_error *e) {
+/* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole. The
+ * factors are there, and stay. Forms are of the source's B, and their coefficients make up for its scale. */
+static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums, hd_error *e) {
     const int32_t width = n > 0 ? f->width : 0, forms = sums->wanted == HDI_WANT_FORMS;
     const double scale = forms ? m->scale * m->scale : 1;
     double *coef;
@@ -13965,6 +13978,7 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
     }
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
+    z.active = sums->active;
     z.forms = forms ? &q : NULL;
     z.values = sums->values;
     z.stride = sums->stride;
@@ -13977,13 +13991,6 @@ static void hdi_elim_invert_width(hdi_elim *m, hdi_factor *f, int32_t n, const h
         (void)hdi_inverse_run(&z, f + i, e);
     }
     hdi_scope_end(&s);
-}
-
-/* Sums over all poles. The factors are there, and stay. */
-static hd_status hdi_elim_invert(hdi_elim *m, const hdi_elim_sums *sums, hd_error *e) {
-    hdi_elim_invert_width(m, &m->real, m->lone >= 0, sums, e);
-    hdi_elim_invert_width(m, m->pack, m->n_used, sums, e);
-    return e->status;
 }
 
 /* out [n] = the diagonal of a factor's inverse, by pivots. coef [width]: of its parts, see hdi_elim_coef.
@@ -15208,11 +15215,9 @@ static void hdi_ground_components(const hd_laplacian *lap, char *loose) {
     int64_t p;
     for (i = 0; i < lap->n_components; i++) loose[i] = hdi_finite(lap->component_mass[i]) != 0;
     for (i = 0; i < lap->n_active && !lap->conserves; i++) {
-        double sum = 0, size = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            sum += lap->L.val[p];
-            size += fabs(lap->L.val[p]);
-        }
+        const double size = hdi_row_size(lap, i, 1, 0, NULL);
+        double sum = 0;
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) sum += lap->L.val[p];
         if (fabs(sum) > hdi_row_terms(lap, i) * DBL_EPSILON * size) loose[lap->component[i]] = 0;
     }
 }
@@ -15312,7 +15317,7 @@ static hd_status hdi_ground_make(hdi_elim *m, hdi_ground *g, hd_error *e) {
         for (i = 0; i < lap->n_active && e->status >= 0; i++) {
             double *trace = g->trace + lap->component[i];
             g->diag[i] = g->held[i] ? 0 : hdi_max(0, g->diag[i]);
-            *trace += g->diag[i] * hdi_mass_row(lap, i);
+            *trace += g->diag[i] * hdi_row_size(lap, i, 0, 1, NULL);
             g->largest_trace = hdi_max(g->largest_trace, *trace);
         }
         g->traced = 1;
@@ -15360,7 +15365,6 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
     double *b = work, *extra = b + n, *r = extra + n, *by = r + n, *sweep = by + lap->n_components;
     double off, ws = 0, root = 0;                /* ws, root: mean and sqrt(G) at the source */
     int32_t i;
-    int64_t p;
     memset(b, 0, (size_t)n * sizeof *b);
     for (i = 0; i < from->n; i++) {
         const int32_t row = lap->row[hdi_terms_at(from, i)];
@@ -15372,15 +15376,9 @@ static double hdi_ground_column(const hdi_elim *m, const hdi_ground *g, const hd
     hdi_ground_refined(m, g, b, NULL, u, by, r, sweep);
     off = by[c];
     if (!forms) return off;
-    for (i = 0; i < n; i++) {                    /* b = B y */
-        double sum = lap->B ? 0 : lap->mass[i] * u[i], size = fabs(sum);
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) {
-            sum += lap->B[p] * u[lap->L.col[p]];
-            size += fabs(lap->B[p] * u[lap->L.col[p]]);
-        }
-        b[i] = sum;
-        extra[i] = (hdi_row_terms(lap, i) + 2) * DBL_EPSILON / 8 * size;
-    }
+    hdi_pair_apply(lap, 0, 1, u, b);
+    for (i = 0; i < n; i++)
+        extra[i] = (hdi_row_terms(lap, i) + 2) * DBL_EPSILON / 8 * hdi_row_size(lap, i, 0, 1, u);
     hdi_ground_refined(m, g, b, extra, u, by, r, sweep);
     for (i = 0; i < n; i++) u[i] -= lap->component[i] == c ? ws * g->mean[i] / mass : 0;
     return trace * off + by[c] + g->mean_off[c] * (fabs(ws) / mass + sqrt(trace / mass) * root);
@@ -16078,9 +16076,7 @@ static double hdi_spec_count_off(hdi_spec *s) {
         }
     }
     for (i = 0; i < s->n; i++) {
-        double own = s->lap->B ? 0 : fabs(s->sigma) * s->lap->mass[i];
-        for (p = s->lap->L.row_ptr[i]; p < s->lap->L.row_ptr[i + 1]; p++)
-            own += fabs(s->lap->L.val[p]) + (s->lap->B ? fabs(s->sigma * s->lap->B[p]) : 0);
+        const double own = hdi_row_size(s->lap, i, 1, fabs(s->sigma), NULL);
         worst = hdi_max(worst, ((terms[i] + HDI_NOISE_TERMS) * sum[i] + 2 * own) / s->lap->b_diag[i]);
     }
     return 0.5 * DBL_EPSILON * (1 + 1e-3) * worst * hdi_ratio_root(s->lap) * hdi_ratio_root(s->lap);
@@ -16832,12 +16828,8 @@ static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ?
 static double hdi_lambda_bound(const hd_laplacian *lap) {
     double most = 0;
     int32_t i;
-    int64_t p = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        double sum = 0;
-        for (; p < lap->L.row_ptr[i + 1]; p++) sum += fabs(lap->L.val[p]);
-        most = hdi_max(most, sum / lap->b_diag[i]);
-    }
+    for (i = 0; i < lap->n_active; i++)
+        most = hdi_max(most, hdi_row_size(lap, i, 1, 0, NULL) / lap->b_diag[i]);
     return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
@@ -17404,12 +17396,8 @@ static HDI_NOINLINE hdi_terms hdi_heat_source(const hdi_heat_call *h, int32_t q)
 static double hdi_lane_rhs_off(const hd_laplacian *lap, const double *f) {
     double sum = 0;
     int32_t i;
-    int64_t p;
     for (i = 0; i < lap->n_active && lap->B; i++) {
-        double size = 0;
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            size += fabs(lap->B[p] * f[lap->L.col[p]]);
-        size *= hdi_row_terms(lap, i);
+        const double size = hdi_row_terms(lap, i) * hdi_row_size(lap, i, 0, 1, f);
         sum += size * (size / lap->b_diag[i]);
     }
     return DBL_EPSILON / 2 * sqrt(sum) * hdi_ratio_root(lap);
@@ -18405,8 +18393,11 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
 
 /* The worse of two reports, with their counts added. */
 static HDI_COLD void hdi_report_merge(hd_report *all, const hd_report *one) {
+    const hdi_parts evidence = {(double)all->evidence_rational, (double)all->evidence_solver,
+                                (double)all->evidence_rounding, (double)all->evidence_local};
     hd_report sum = *one;
     int32_t p;
+    hdi_report_worst(&sum, hdi_report_parts(all), all->error_bound, evidence);
     sum.status = all->status > sum.status ? all->status : sum.status;
     sum.iterations += all->iterations;
     for (p = 0; p < HD_MAX_POLES; p++) sum.pole_iterations[p] += all->pole_iterations[p];
@@ -18414,18 +18405,9 @@ static HDI_COLD void hdi_report_merge(hd_report *all, const hd_report *one) {
     sum.n_poles = hdi_high32(all->n_poles, sum.n_poles);
     sum.growth = hdi_max(all->growth, sum.growth);
     sum.residual = hdi_max(all->residual, sum.residual);
-    sum.error_rational = hdi_max(all->error_rational, sum.error_rational);
-    sum.error_solver = hdi_max(all->error_solver, sum.error_solver);
-    sum.error_rounding = hdi_max(all->error_rounding, sum.error_rounding);
-    hdi_evidence_worst(&sum.evidence_rational, all->evidence_rational);
-    hdi_evidence_worst(&sum.evidence_solver, all->evidence_solver);
-    hdi_evidence_worst(&sum.evidence_rounding, all->evidence_rounding);
     hdi_evidence_worst(&sum.evidence_b, all->evidence_b);
-    sum.error_local = hdi_max(all->error_local, sum.error_local);
-    hdi_evidence_worst(&sum.evidence_local, all->evidence_local);
     sum.n_touched = hdi_high32(all->n_touched, sum.n_touched);
     sum.error_bound_b = hdi_max(all->error_bound_b, sum.error_bound_b);
-    sum.error_bound = hdi_max(all->error_bound, sum.error_bound);
     sum.mass_drift = hdi_max(all->mass_drift, sum.mass_drift);
     sum.error_relative = hdi_max(all->error_relative, sum.error_relative);
     if (all->smallest > 0 && (sum.smallest == 0 || all->smallest < sum.smallest))
@@ -19099,17 +19081,13 @@ static HDI_COLD hd_status hdi_heat_engine(hdi_heat_call *h) {
 /* From this t low on values are among the smallest doubles. */
 #define HDI_MODES_FADED 650
 
-/* The norm of the rounding of B^-1 L x - lambda x, L's rows that sum to zero included. */
+/* The norm of the rounding of B^-1 L x - lambda x, x by rows, L's rows that sum to zero included. */
 static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double value) {
     double sum = 0;
     int32_t i;
-    int64_t p;
     for (i = 0; i < lap->n_active; i++) {
         const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON;
-        double row = lap->B ? 0 : value * lap->mass[i] * fabs(x[lap->vertex[i]]);
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
-            row += (fabs(lap->L.val[p]) + (lap->B ? value * fabs(lap->B[p]) : 0)) *
-                fabs(x[lap->vertex[lap->L.col[p]]]);
+        const double row = hdi_row_size(lap, i, 1, value, x);
         sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* not by squares, which may underflow */
     }
     return hdi_ratio_root(lap) * sum;
@@ -19165,7 +19143,8 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     for (q = 0, x->off_norm = 0; q < s->count; q++) {
         const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
         x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
-        x->off[q] += hdi_modes_noise(lap, s->vector + (int64_t)q * s->n, fabs(value));
+        hdi_gather(lap, s->vector + (int64_t)q * s->n, x->one);
+        x->off[q] += hdi_modes_noise(lap, x->one, fabs(value));
         x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
         if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
     }
@@ -20042,6 +20021,27 @@ static int32_t hdi_inverses_column(const hdi_heat_call *h, const hdi_inverses *x
     return x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
 }
 
+/* Is row i of the copy of the pair one of those asked for? */
+static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
+    return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
+}
+
+/* The fronts to invert for the rows that count, and for their neighbours if entries are wanted. */
+static const char *hdi_inverses_fronts(const hdi_heat_call *h, hdi_wanted wanted, hdi_scope *s) {
+    const hdi_elim *m = &h->heat->elim;
+    const hd_csr *L = &m->lap->L;
+    char *active = HDI_TAKE_ZERO(s, char, m->sym.n_super);
+    int64_t p;
+    int32_t i;
+    for (i = 0; i < m->sym.n && active; i++) {
+        if (!hdi_row_counts(h, i)) continue;
+        hdi_sweep_touch(&m->sym, i, active);
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1] && wanted == HDI_WANT_ENTRIES; p++)
+            hdi_sweep_touch(&m->sym, L->col[p], active);
+    }
+    return active;
+}
+
 /* Makes room for `count` functions, and their sets: times t of the call that share poles to tol or, where t
  * is NULL, the time under way or all filters of the plan. */
 static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const double *t, int32_t count,
@@ -20053,6 +20053,7 @@ static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const doub
     x->count = count;
     x->t = t;
     x->of.wanted = wanted;
+    x->of.active = h->core > 0 ? hdi_inverses_fronts(h, wanted, s) : NULL;
     x->of.stride = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
     x->set = HDI_TAKE_ZERO(s, hd_rational, count);
     x->slack = HDI_TAKE(s, double, count);
@@ -20109,7 +20110,9 @@ static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *
     for (q = 0; q < n_sets && by_pole; q++)
         unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
-    return hdi_elim_invert(m, &x->of, h->e);
+    hdi_elim_invert(m, &m->real, m->lone >= 0, &x->of, h->e);
+    hdi_elim_invert(m, m->pack, m->n_used, &x->of, h->e);
+    return h->e->status;
 }
 
 /* The values of function q: k, or with `bound` g before its factor. */
@@ -20172,14 +20175,10 @@ static double hdi_by_mass(double x, double b, int32_t mass) {
     return mass == 0 ? x : mass == 1 ? b * x : b * (b * x);      /* b^2 may leave the range of doubles */
 }
 
-/* Is row i of the copy of the pair one of those asked for? */
-static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
-    return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
-}
-
 /* What a part of the mesh leaves out of an entry of the diagonal. B takes entries beside it. */
 static double hdi_diagonal_left_out(const hdi_heat_call *h, int32_t mass, int32_t i) {
-    return h->left_out > 0 ? h->left_out * hdi_by_mass(1, hdi_mass_row(h->heat->elim.lap, i), mass) : 0;
+    return h->left_out > 0
+        ? h->left_out * hdi_by_mass(1, hdi_row_size(h->heat->elim.lap, i, 0, 1, NULL), mass) : 0;
 }
 
 static hdi_diagonal hdi_diagonal_take(int32_t n, int32_t mass, hdi_scope *s) {
@@ -20250,13 +20249,15 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
 /* Does rounding show in the values alone? k_t(i,i) is at least the part that the constants have in it, and no
  * set that approximates exp gives less. (In K_t with a full B the parts of other eigenvectors, x(v) (B x)(v),
  * may be negative.) Returns the largest relative error that a smaller value proves. */
-static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d) {
+static double hdi_below_constants(const hdi_heat_call *h, const hdi_diagonal *d) {
+    const hd_laplacian *lap = h->heat->elim.lap;
     double most = 0;
     int32_t i;
     for (i = 0; i < lap->n_active && !d->full && d->set->a0 == 0; i++) {
         const double part = d->set->kind == HD_POLES_OWN ? 0 : hdi_constant_part(lap, i);
         const double least = hdi_by_mass(part, lap->mass[i], d->mass), value = d->value[i];
-        if (value < 0.999 * least) most = hdi_max(most, hdi_quotient(least - value, fabs(value)));
+        if (hdi_row_counts(h, i) && value < 0.999 * least)
+            most = hdi_max(most, hdi_quotient(least - value, fabs(value)));
     }
     return most;
 }
@@ -20265,19 +20266,20 @@ static double hdi_below_constants(const hd_laplacian *lap, const hdi_diagonal *d
  * beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What is
  * added is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
  * then does to the inverse in the B norm. Poles further than 1 from the spectrum are left to the probes. */
-static double hdi_own_rounding(const hd_heat *heat, const hdi_diagonal *d, double t, double seen) {
-    const hd_laplacian *lap = heat->elim.lap;
+static double hdi_own_rounding(const hdi_heat_call *h, const hdi_diagonal *d, double seen) {
+    const hd_laplacian *lap = h->heat->elim.lap;
     const hd_rational *set = d->set;
+    const double top = h->t * h->heat->lambda_max;
     double near_by = 0, most = 0;
     int32_t i, p;
     for (p = 0; p < set->n_poles; p++) {
         const double apart = hdi_pole_distance(set->theta[p]);
-        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + t * heat->lambda_max);
+        const double size = hdi_pole_size(set, p) * (hdi_cabs(set->theta[p]) + top);
         if (apart < 1) near_by += DBL_EPSILON * hdi_quotient(hdi_quotient(size, apart), apart);
     }
     if (d->full) near_by *= hdi_ratio_root(lap);
     for (i = 0; i < lap->n_active && near_by > 0; i++)
-        most = hdi_max(most, hdi_quotient(d->spread[i], hdi_diagonal_size(d, i)));
+        if (hdi_row_counts(h, i)) most = hdi_max(most, hdi_quotient(d->spread[i], hdi_diagonal_size(d, i)));
     return HDI_PROBE_OWN * seen + near_by * most;
 }
 
@@ -20287,15 +20289,16 @@ typedef struct hdi_probe {
     hdi_extra columns;
 } hdi_probe;
 
-/* The rows where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
-static hdi_probe hdi_probe_rows(const hd_laplacian *lap, const double *k, int32_t also) {
+/* Of the rows that count those where t L_ii/b_ii and where t L_ii k_ii is largest, and `also` (-1: none). */
+static hdi_probe hdi_probe_rows(const hdi_heat_call *h, const double *k, int32_t also) {
+    const hd_laplacian *lap = h->heat->elim.lap;
     hdi_probe x;
     double most[2] = {-1, -1};
     int32_t i, q, at[HDI_PROBES] = {-1, -1, also};
     for (i = 0; i < lap->n_active; i++) {
         const double l = hdi_row_diagonal(lap, i), size[2] = {l / lap->b_diag[i], l * k[i]};
         for (q = 0; q < 2; q++) {
-            if (!(size[q] > most[q])) continue;
+            if (!(size[q] > most[q]) || !hdi_row_counts(h, i)) continue;
             most[q] = size[q];
             at[q] = i;
         }
@@ -20326,7 +20329,7 @@ static hd_status hdi_probe_run(hdi_heat_call *h, const hdi_inverses *x, int wors
         at = i;
         most = off;
     }
-    *probe = hdi_probe_rows(lap, d->value, at);
+    *probe = hdi_probe_rows(h, d->value, at);
     if (x->of.wanted == HDI_WANT_FORMS) {
         rows->n = x->count;
         rows->weight = x->weight;
@@ -20383,11 +20386,11 @@ static double hdi_probe_entry(const hd_heat *heat, const hdi_probe *probe, int32
 /* What rounding does to diagonal d, which is that of function q, relative to its size. */
 static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
                                          const hdi_diagonal *d, const hdi_probe *probe) {
-    double rounding = hdi_below_constants(h->heat->elim.lap, d);
+    double rounding = hdi_below_constants(h, d);
     int32_t r;
     for (r = 0; r < probe->k; r++)
         rounding = hdi_max(rounding, hdi_probe_entry(h->heat, probe, r, x, q, d));
-    return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h->heat, d, h->t, rounding) : rounding;
+    return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h, d, rounding) : rounding;
 }
 
 /* ---- diagonals and traces ---- */
@@ -21277,7 +21280,7 @@ static hd_status hdi_metric_ground(hdi_metric *x, hdi_scope *s) {
         if (g->diag[i] > g->diag[farthest]) farthest = i;
         if (g->diag[i] > 0 && !(g->diag[nearest] > 0 && g->diag[nearest] <= g->diag[i])) nearest = i;
     }
-    probe = hdi_probe_rows(m->lap, g->diag, n > 0 ? farthest : -1);
+    probe = hdi_probe_rows(h, g->diag, n > 0 ? farthest : -1);
     /* and the nearest, where the relative error is largest */
     for (i = 0; i <= probe.k && n > 0; i++) {
         const int32_t row = i < probe.k ? probe.row[i] : nearest;
@@ -21381,7 +21384,7 @@ static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, co
     }
     if (hdi_heat_end(&d) < 0) return (*h->e = local->error).status;
     for (i = 0; i < lap->n_active; i++) {
-        const double size = kind->mass > 0 ? hdi_mass_row(lap, i) : 1;
+        const double size = kind->mass > 0 ? hdi_row_size(lap, i, 0, 1, NULL) : 1;
         x->f.value[i] = to.D[lap->vertex[i]];
         x->f.g[i] = HUGE_VAL;
         x->f.spread[i] = size * size;
@@ -21683,8 +21686,7 @@ static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_end *a, 
 
 /* An error in parts that are in the ratio of those of the report. */
 static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
-    const hdi_parts rounding = {0, 0, error, 0};
-    const hdi_parts whole = {rep->error_rational, rep->error_solver, rep->error_rounding, rep->error_local};
+    const hdi_parts rounding = {0, 0, error, 0}, whole = hdi_report_parts(rep);
     const double sum = hdi_parts_sum(&whole);
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
@@ -22345,16 +22347,11 @@ static void hdi_estimate_pairs(const hd_heat *heat, int32_t count, hd_cost *c) {
     c->bytes_most = HDI_MODES_OVER * c->bytes;
 }
 
-/* Time q of the call, of those that are sorted. */
-static double hdi_estimate_time(const hdi_estimate *x, int32_t q) {
-    const hdi_heat_call *h = x->of.task.h;
-    return h->ask.t[h->time_column[q]];
-}
-
-/* How many are asked for there. */
+/* How many are asked for at time q of the call, of those that are sorted. */
 static int32_t hdi_estimate_count(const hdi_estimate *x, int32_t q) {
-    const hd_heat *heat = x->of.task.h->heat;
-    return hdi_modes_count(heat, hdi_modes_expected(heat, x->of.task.depth / hdi_estimate_time(x, q)));
+    const hdi_heat_call *h = x->of.task.h;
+    const double above = x->of.task.depth / h->ask.t[h->time_column[q]];
+    return hdi_modes_count(h->heat, hdi_modes_expected(h->heat, above));
 }
 
 /* The most that eigenpairs for time q take while they are found, times over, and then beside other bytes. */
@@ -22409,11 +22406,11 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
 static hd_status hdi_estimate_times(const hdi_estimate *x) {
     hdi_heat_call *h = x->of.task.h;
     const hd_heat *heat = h->heat;
-    const int32_t n_times = h->n_times, inverses = x->by == HDI_BY_INVERSION;
+    const int32_t n_times = h->n_times, inverses = x->by == HDI_BY_INVERSION, *at = h->time_column;
     hd_cost *c = x->to->cost + HD_METHOD_DIRECT;
     int32_t some = 0, few = n_times;
-    while (few > 0 && hdi_task_near(&x->of.task, hdi_estimate_time(x, few - 1), x->of.task.serves)) few--;
-    while (some < few && !hdi_task_near(&x->of.task, hdi_estimate_time(x, some), HDI_MODES_MOST)) some++;
+    while (few > 0 && hdi_task_near(&x->of.task, h->ask.t[at[few - 1]], x->of.task.serves)) few--;
+    while (some < few && !hdi_task_near(&x->of.task, h->ask.t[at[some]], HDI_MODES_MOST)) some++;
     if ((inverses || few == 0) && hdi_estimate_analyse(h) < 0) return h->e->status;
     if (inverses) hdi_estimate_inverses(x, few > 0 ? few : n_times, c);
     else (void)hdi_estimate_solves(x);

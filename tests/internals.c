@@ -1050,6 +1050,12 @@ static void int_probe_rows(void) {
     double *k = KIT_NEW(double, n);
     uint64_t seed = 8;
     int32_t i, round, p;
+    hd_error e = int_no_error();
+    hdi_heat_call h;
+    memset(&h, 0, sizeof h);
+    h.heat = kit_heat(lap, "method=direct");
+    CHECK(hdi_heat_analysed(h.heat, &e) >= 0);
+    lap = h.heat->elim.lap;
     for (round = 0; round < 20; round++) {
         int32_t first = 0, second = 0, found = 0;
         hdi_probe probe;
@@ -1058,7 +1064,7 @@ static void int_probe_rows(void) {
             if (hdi_row_diagonal(lap, i) / lap->b_diag[i] > hdi_row_diagonal(lap, first) / lap->b_diag[first]) first = i;
             if (hdi_row_diagonal(lap, i) * k[i] > hdi_row_diagonal(lap, second) * k[second]) second = i;
         }
-        probe = hdi_probe_rows(lap, k, round);
+        probe = hdi_probe_rows(&h, k, round);
         for (p = 0; p < probe.k; p++) found |= (probe.row[p] == first) + 2 * (probe.row[p] == second) + 4 * (probe.row[p] == round);
         CHECK_MSG(found == 7 && probe.k <= 3, "rows %d, %d: %d", (int)first, (int)second, (int)found);
     }
@@ -1448,13 +1454,49 @@ static void int_patches_means(void) {
     }
 }
 
+/* Where only some rows count the fronts without these are left out, and the values of the others stay: of k_t, of K_t by entries of
+ * the inverse, and of B k_t B by forms. */
+static void int_core(void) {
+    const hd_laplacian *lap = kit_pair("flat/60/60/0.3 fem");
+    const double t = 3 * lap->h * lap->h;
+    const int32_t core = lap->n / 12;
+    double *D[2] = {KIT_NEW(double, lap->n), KIT_NEW(double, lap->n)};
+    int32_t mass, part, v, left_out;
+    for (mass = 0; mass < 3; mass++) {
+        for (part = 0; part < 2; part++) {
+            hdi_diagonals to;
+            hdi_heat_call h;
+            hdi_scope s;
+            CHECK(hdi_kernel_begin(&h, kit_heat(lap, "method=direct"), HD_KERNEL_SYMMETRIC, NULL, NULL) >= 0 &&
+                  hdi_times_check(&h, 1, &t, 1) >= 0);
+            h.core = part ? core : 0;
+            memset(&to, 0, sizeof to);
+            to.task.h = &h;
+            to.mass = mass;
+            to.D = D[part];
+            to.ldd = (size_t)lap->n;
+            CHECK(hdi_diagonals_run(&h, &to) >= 0 && h.rep->error_bound < 1e-5);
+            s = hdi_scope_begin(h.heat->ctx, h.e);
+            if (part) {
+                const char *active = hdi_inverses_fronts(&h, hdi_diagonals_wanted(&to), &s);
+                for (v = 0, left_out = 0; v < h.heat->elim.sym.n_super; v++) left_out += !active[v];
+                CHECK_MSG(left_out > h.heat->elim.sym.n_super / 2, "%d of %d", (int)left_out, (int)h.heat->elim.sym.n_super);
+            }
+            (void)hdi_scope_end(&s);
+            (void)hdi_heat_end(&h);
+        }
+        for (v = 0; v < core; v++) CHECK(fabs(D[1][v] - D[0][v]) <= 1e-12 * D[0][v]);
+        for (; v < lap->n; v++) CHECK(D[1][v] == 0);
+    }
+}
+
 /* The tests, in groups that free what they made. */
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_core, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
