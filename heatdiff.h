@@ -13957,7 +13957,8 @@ typedef struct hdi_elim_sums {
 } hdi_elim_sums;
 
 /* The part of n factors of the same width, f[i] with the coefficients of pack i, or of the lone real pole.
- * The factors are there, and stay. Forms are of the source's B, and their coefficients make up for its scale. */
+ * The factors are there, and stay. Forms are of the source's B, and their coefficients make up for its
+ * scale. */
 static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_elim_sums *sums, hd_error *e) {
     const int32_t width = n > 0 ? f->width : 0, forms = sums->wanted == HDI_WANT_FORMS;
     const double scale = forms ? m->scale * m->scale : 1;
