@@ -543,7 +543,8 @@ typedef enum hd_evidence {
 /* What happened, and how large the error can be: the worst of all fields, columns and times. error_bound
  * bounds the error of any value returned, relative to the largest |value| of its column, or of the whole list
  * for entries and pairs; above 1e-2 the status is HD_WARN_ACCURACY. It sums four parts: the rational
- * approximation, the iterative solver, rounding, and what method local leaves out. */
+ * approximation, iterations or a Krylov basis that end, rounding, and what method local leaves out. How each
+ * is made stands at the top of room [22]. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* as err, if status < 0 */
@@ -12756,13 +12757,14 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * and |r|_(B^-1)^2 <= |r|_(D^-1)^2 / b_ratio, D = diag(B). At vertex v, |e_v| <= |e|_B / sqrt(b_ratio D_v),
  * and |e_v| <= sqrt(g_v) |e|_M for g = diag(M^-1). The second is much smaller where heat has spread far.
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
- * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger and
- * hdi_heat_collect say how each is known; and a lane has them in the norm of B from its engine. With poles
- * these are hdi_lane_residual and hdi_rational_bound; of krylov, in hdi_krylov_answer, hdi_ritz_most
- * (solver), hdi_rim_bound (local) and hdi_krylov_rounding, from the residuals that hdi_krylov_probe measures;
- * of Lanczos the like in hdi_lanczos_run. hdi_conserve_off adds what means are off by; rhs_off and f_off of
- * hdi_heat_load are what the right-hand side is. A residual counts as in hdi_residual_seen, with the rounding
- * of hdi_noise_weights, in the norm of D^-1; hdi_ratio_root leads from there to that of B^-1. */
+ * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger says how each
+ * is known; and a lane has them in the norm of B from its engine. With poles these are hdi_lane_residual and
+ * hdi_rational_bound. In hdi_krylov_answer they are those of the window before and, by hdi_ritz_most, what
+ * the basis leaves out (solver) and what errors of its steps become (hdi_krylov_rounding; hdi_krylov_probe
+ * measures some of these), on a part of the mesh also hdi_rim_bound (local). Of Lanczos see hdi_lanczos_run.
+ * hdi_conserve_off adds what means are off by; rhs_off and f_off of hdi_heat_load are what the right-hand
+ * side is. A residual counts as in hdi_residual_seen, with the rounding of hdi_noise_weights, in the norm of
+ * D^-1; hdi_ratio_root leads from there to that of B^-1. */
 
 /* Parts of an error bound, in one of the norms or of values. */
 typedef struct hdi_parts { double rational, solver, rounding, local; } hdi_parts;
