@@ -17111,13 +17111,13 @@ enum { HDI_POLES_EXPECTED = 5 };
 /* ---- requests and calls ---- */
 
 /* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
-typedef enum hdi_query {
-    HDI_QUERY_FIELD, HDI_QUERY_ADJOINT, HDI_QUERY_OPERATOR, HDI_QUERY_SYMMETRIC
-} hdi_query;
+typedef enum hdi_item {
+    HDI_ITEM_FIELD, HDI_ITEM_ADJOINT, HDI_ITEM_OPERATOR, HDI_ITEM_SYMMETRIC
+} hdi_item;
 
 /* Does the caller give the fields? */
-static int hdi_query_fields(hdi_query query) {
-    return query == HDI_QUERY_FIELD || query == HDI_QUERY_ADJOINT;
+static int hdi_item_fields(hdi_item item) {
+    return item == HDI_ITEM_FIELD || item == HDI_ITEM_ADJOINT;
 }
 
 /* Single entries of the kernel, sorted by their column: item q is order[begin[q]] to order[begin[q + 1] -
@@ -17141,7 +17141,7 @@ typedef struct hdi_sparse {
 
 /* A request: k items, each a field, a column, or the entries of a column. */
 typedef struct hdi_request {
-    hdi_query query;
+    hdi_item item;
     int32_t k, n_times;
     const double *t;             /* [n_times] in the caller's unit and order */
     const double *F;             /* fields, columns ldf apart */
@@ -17273,7 +17273,7 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     return hdi_scope_end(&s);
 }
 
-static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query, hd_report *report,
+static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_item item, hd_report *report,
                                 hd_error *err) {
     memset(h, 0, sizeof *h);
     h->rep = report ? report : &h->own_report;
@@ -17282,7 +17282,7 @@ static hd_status hdi_heat_begin(hdi_heat_call *h, hd_heat *heat, hdi_query query
     h->err = err;
     hdi_error_clear(h->e);
     h->heat = heat;
-    h->ask.query = query;
+    h->ask.item = item;
     h->ask.n_times = h->n_times = 1;
     h->times = &h->t;
     if (!heat) return hdi_missing(h->e);
@@ -17368,7 +17368,7 @@ static hd_pole_kind hdi_heat_kind(const hdi_heat_call *h) {
     const hd_pole_kind asked = h->heat->opts.poles;
     /* see hdi_rational_rate: errors of uniform sets do not fall off */
     if (h->rate) return HD_POLES_KERNEL;
-    return asked ? asked : hdi_query_fields(h->ask.query) ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
+    return asked ? asked : hdi_item_fields(h->ask.item) ? HD_POLES_UNIFORM : HD_POLES_KERNEL;
 }
 
 static hd_status hdi_heat_end(hdi_heat_call *h) {
@@ -17500,9 +17500,9 @@ static void hdi_lane_field(const hdi_heat_call *h, const double *f, hdi_lane *la
  * source without rows needs no solve, and is skipped. */
 static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
-    const hdi_query query = h->ask.query;
-    const int fields = hdi_query_fields(query);
-    const int given = query == HDI_QUERY_FIELD || query == HDI_QUERY_OPERATOR;
+    const hdi_item item = h->ask.item;
+    const int fields = hdi_item_fields(item);
+    const int given = item == HDI_ITEM_FIELD || item == HDI_ITEM_OPERATOR;
     const hdi_terms c = fields ? hdi_terms_vertex(0) : hdi_heat_source(h, q);
     double *x = given ? lane->f : lane->rhs, sums = c.weight ? (double)c.n * DBL_EPSILON : 0;
     lane->status = HD_OK;
@@ -17510,13 +17510,13 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
     lane->steps = lane->exponent = 0;
     lane->f_off = lane->rhs_off = 0;
     lane->watch = h->watching && !fields && !c.weight ? hdi_call_row(h, c.one) : -1;
-    lane->dual = query == HDI_QUERY_ADJOINT;
+    lane->dual = item == HDI_ITEM_ADJOINT;
     if (fields) hdi_lane_field(h, h->ask.F + (size_t)q * h->ask.ldf, lane, x);
     else lane->f_norm = hdi_lane_terms(h, &c, x);
     lane->skip = !fields && lane->f_norm == 0;
     if (lane->skip) return HD_OK;
     /* of a column of k_t a bound on the norm of f = B^-1 e is enough where f itself is not used */
-    if (query == HDI_QUERY_SYMMETRIC && lap->b_ratio > 0 &&
+    if (item == HDI_ITEM_SYMMETRIC && lap->b_ratio > 0 &&
         (h->by_pairs || (h->method == HD_METHOD_DIRECT && h->t > 0 && h->heat->elim.set.a0 == 0))) {
         memset(lane->f, 0, (size_t)lap->n_active * sizeof *lane->f);   /* a0 = 0 times it is 0 */
         lane->f_norm *= hdi_ratio_root(lap);
@@ -17544,7 +17544,7 @@ static hd_status hdi_heat_load(const hdi_heat_call *h, int32_t q, hdi_lane *lane
 /* The unit of answers in terms of the method's copy of the pair: k_t has that of B^-1. */
 static double hdi_heat_unit(const hdi_heat_call *h) {
     if (h->rate) return h->t > 0 ? 1 / h->ask.t[h->now] : h->heat->scale;
-    return h->ask.query == HDI_QUERY_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
+    return h->ask.item == HDI_ITEM_SYMMETRIC && h->lap != h->heat->source ? h->heat->scale : 1;
 }
 
 /* The entries of item q, from the lane's answer. */
@@ -17558,7 +17558,7 @@ static void hdi_heat_store_entries(const hdi_heat_call *h, int32_t q, const hdi_
         const hdi_pair at = list->order[p];
         const int32_t v = list->rows[at.id], row = hdi_call_row(h, v), beyond = row == HDI_ROW_BEYOND;
         hdi_parts off = {0, 0, 0, 0};
-        values[at.id] = row == HD_ROW_INERT && h->ask.query == HDI_QUERY_OPERATOR && (uint64_t)v == at.key;
+        values[at.id] = row == HD_ROW_INERT && h->ask.item == HDI_ITEM_OPERATOR && (uint64_t)v == at.key;
         if ((row >= 0 || beyond) && !lane->skip) {
             const double b = beyond ? h->heat->scale * whole->b_diag[whole->row[v]] : lap->b_diag[row];
             values[at.id] = beyond ? 0 : unit * lane->u[row];
@@ -17599,7 +17599,7 @@ static void hdi_heat_store_sparse(const hdi_heat_call *h, int32_t q, const hdi_l
     for (i = 0; i < n + c.n; i++) {
         const int32_t v = i < n ? hdi_call_vertex(h, i) : hdi_terms_at(&c, i - n);
         const double value = i < n ? unit * lane->u[i] : hdi_terms_weight(&c, i - n);
-        if (i >= n && (h->ask.query != HDI_QUERY_OPERATOR || hdi_call_row(h, v) != HD_ROW_INERT)) continue;
+        if (i >= n && (h->ask.item != HDI_ITEM_OPERATOR || hdi_call_row(h, v) != HD_ROW_INERT)) continue;
         if (hdi_fail_range(h->e, v, value) < 0) return;
         if (value == 0 || (i < n && fabs(value) < to->cut * most)) continue;
         to->at[to->n].key = (uint64_t)v;
@@ -17613,20 +17613,20 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
     const hd_laplacian *whole = hdi_call_whole(h);
     const size_t column = (size_t)q * (size_t)h->ask.n_times + (size_t)h->now;
     const double unit = hdi_heat_unit(h);
-    const int copy = h->t == 0 && h->ask.query == HDI_QUERY_FIELD && !h->rate;
+    const int copy = h->t == 0 && h->ask.item == HDI_ITEM_FIELD && !h->rate;
     double *u = h->ask.U ? h->ask.U + column * h->ask.ldu : NULL;
     const double *out = hdi_lane_answer(lane);
     int32_t i;
     if (h->ask.list) hdi_heat_store_entries(h, q, lane);
     if (h->ask.sparse) hdi_heat_store_sparse(h, q, lane, h->ask.sparse);
     if (!u) return;
-    if (hdi_query_fields(h->ask.query)) {        /* vertices without mass keep their value */
+    if (hdi_item_fields(h->ask.item)) {        /* vertices without mass keep their value */
         const double *f = h->ask.F + (size_t)q * h->ask.ldf;
         if (u != f) memmove(u, f, (size_t)whole->n * sizeof *u);
     } else {                                     /* and so they do in columns of K_t */
         const hdi_terms c = hdi_heat_source(h, q);
         memset(u, 0, (size_t)whole->n * sizeof *u);
-        for (i = 0; i < c.n && h->ask.query == HDI_QUERY_OPERATOR; i++)
+        for (i = 0; i < c.n && h->ask.item == HDI_ITEM_OPERATOR; i++)
             if (hdi_call_row(h, hdi_terms_at(&c, i)) == HD_ROW_INERT)
                 u[hdi_terms_at(&c, i)] = hdi_terms_weight(&c, i);
     }
@@ -17665,7 +17665,7 @@ static int32_t hdi_heat_degree(hdi_heat_call *h) {
     const int direct = h->method == HD_METHOD_DIRECT;
     int32_t q, degree = 8;
     hd_rational set;
-    if (!hdi_query_fields(h->ask.query) || hdi_heat_lanes(h, 1, 0, 0) < 0) return HDI_RAT_UNIFORM_MAX;
+    if (!hdi_item_fields(h->ask.item) || hdi_heat_lanes(h, 1, 0, 0) < 0) return HDI_RAT_UNIFORM_MAX;
     for (q = 0; q < h->ask.k; q++) {
         hdi_lane *lane = h->heat->lane;
         double most;
@@ -18148,7 +18148,7 @@ static hd_status hdi_heat_by_direct(hdi_heat_call *h) {
         if (!heat->batch_room) return h->e->status;
         heat->batch_doubles = b.fresh;
     }
-    b.deflated = !h->watching && (hdi_query_fields(h->ask.query) || h->t * heat->lambda_max > HDI_DEFLATE);
+    b.deflated = !h->watching && (hdi_item_fields(h->ask.item) || h->t * heat->lambda_max > HDI_DEFLATE);
     return hdi_heat_items(h, hdi_direct_solve, &b);
 }
 
@@ -18377,8 +18377,8 @@ static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     z->m = h->m;
     z->rate = h->rate;
     z->rim = h->part ? &h->part->rim : NULL;
-    z->dual = h->ask.query == HDI_QUERY_ADJOINT;
-    z->inverse = z->dual || h->ask.query == HDI_QUERY_SYMMETRIC;
+    z->dual = h->ask.item == HDI_ITEM_ADJOINT;
+    z->inverse = z->dual || h->ask.item == HDI_ITEM_SYMMETRIC;
     if (hdi_heat_lanes(h, wide, 0, 0) < 0) return h->e->status;
     for (h->batch = 0; h->batch < h->ask.k; h->batch += n) {
         n = hdi_low32(h->ask.k - h->batch, h->n_lanes);
@@ -18803,7 +18803,7 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     hdi_heat_call in;
     double *times;
     int32_t i;
-    if (hdi_heat_begin(&in, &l->heat, h->ask.query, rep, h->e) < 0) return hdi_heat_end(&in);
+    if (hdi_heat_begin(&in, &l->heat, h->ask.item, rep, h->e) < 0) return hdi_heat_end(&in);
     times = HDI_TAKE(&in.s, double, h->n_times);
     if (in.e->status < 0) return hdi_heat_end(&in);
     in.part = l;
@@ -18909,7 +18909,7 @@ static int hdi_local_can(const hdi_heat_call *h) {
     return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->iterations_asked &&
            (!heat->poles_asked || (HDI_HAS_POLE_FACTORS && heat->opts.rational)) &&
            h->times[0] > 0 && heat->source->b_ratio > 0 &&
-           (asked || !hdi_query_fields(h->ask.query) ||
+           (asked || !hdi_item_fields(h->ask.item) ||
             (h->ask.F && (h->ask.F != h->ask.U || h->ask.k == 1)));
 }
 
@@ -18930,7 +18930,7 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     if (hdi_over_limit(h->heat->ctx, h->e)) hdi_error_clear(h->e);
     else if (l && h->e->status >= 0) c->possible = l->n <= most;
     if (!c->possible) return;
-    n = hdi_query_fields(h->ask.query) && !h->ask.F ? lap->n_active : l->n;
+    n = hdi_item_fields(h->ask.item) && !h->ask.F ? lap->n_active : l->n;
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
     steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
     if (set) hdi_fill_cost(f, HDI_PACK, packs, packs, 0, c);
@@ -19450,7 +19450,7 @@ static void hdi_fading_bound(const hdi_heat_call *h, hdi_spec_sums *a, const hdi
                              double kept, hdi_lane *lane) {
     const hdi_bank *b = &a->bank;
     hdi_share *f = &a->from;
-    const double terms = hdi_query_fields(h->ask.query) ? (double)h->lap->n_active / 2 : 0;
+    const double terms = hdi_item_fields(h->ask.item) ? (double)h->lap->n_active / 2 : 0;
     const double f2 = lane->f_norm * lane->f_norm, rounding = b->noise + terms * DBL_EPSILON;
     const double sums = hdi_decayed(b, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
     f->whole = lane->f_norm;
@@ -19549,12 +19549,12 @@ static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
     hdi_lane_means(lane, lap);
     for (i = 0; i < lap->n_active; i++) lane->u[i] = lane->sums[lap->component[i]];
     lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_query_fields(h->ask.query)));
+    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_item_fields(h->ask.item)));
 }
 
 /* The field itself. */
 static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
-    const double plain = h->ask.query == HDI_QUERY_SYMMETRIC ? 2 * DBL_EPSILON : 0;
+    const double plain = h->ask.item == HDI_ITEM_SYMMETRIC ? 2 * DBL_EPSILON : 0;
     memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
     lane->u_norm = lane->f_norm;
     hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
@@ -19677,8 +19677,8 @@ static hd_status hdi_times_check(hdi_heat_call *h, int32_t n_times, const double
 /* The start of a query of a kernel. */
 static HDI_NOINLINE hd_status hdi_kernel_begin(hdi_heat_call *h, hd_heat *heat, hd_kernel kernel,
                                                hd_report *report, hd_error *err) {
-    const hdi_query query = kernel == HD_KERNEL_SYMMETRIC ? HDI_QUERY_SYMMETRIC : HDI_QUERY_OPERATOR;
-    if (hdi_heat_begin(h, heat, query, report, err) < 0) return h->e->status;
+    const hdi_item item = kernel == HD_KERNEL_SYMMETRIC ? HDI_ITEM_SYMMETRIC : HDI_ITEM_OPERATOR;
+    if (hdi_heat_begin(h, heat, item, report, err) < 0) return h->e->status;
     if (kernel == HD_KERNEL_OPERATOR || kernel == HD_KERNEL_SYMMETRIC) return HD_OK;
     return hdi_fail(h->e, HD_ERR_ARGUMENT, "heat: the kernel is operator or symmetric");
 }
@@ -19793,7 +19793,7 @@ static hd_status hdi_fields_run(hd_heat *heat, const hdi_request *ask, int deriv
                                 hd_error *err) {
     hdi_heat_call h;
     int32_t q;
-    if (hdi_heat_begin(&h, heat, ask->query, report, err) < 0) return hdi_heat_end(&h);
+    if (hdi_heat_begin(&h, heat, ask->item, report, err) < 0) return hdi_heat_end(&h);
     h.ask = *ask;
     if (hdi_times_check(&h, ask->n_times, ask->t, 0) < 0) return hdi_heat_end(&h);
     if (ask->k < 0) hdi_fail(h.e, HD_ERR_ARGUMENT, "heat: a number of fields or columns is negative");
@@ -22101,7 +22101,7 @@ static HDI_COLD void hdi_sample_answer(const hdi_distance_query *of, hdi_metric 
 static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_distance_row *kind,
                                     int32_t n_times, const double *t, int pairs, hd_report *report,
                                     hd_error *err) {
-    if (hdi_heat_begin(h, heat, HDI_QUERY_SYMMETRIC, report, err) < 0) return h->e->status;
+    if (hdi_heat_begin(h, heat, HDI_ITEM_SYMMETRIC, report, err) < 0) return h->e->status;
     h->relative = 1;
     if (!HDI_HAS_DIFFUSION) return HDI_LEFT_OUT(h->e, DIFFUSION, "diffusion distances");
     if (!kind) return hdi_fail(h->e, HD_ERR_ARGUMENT, "distance: unknown kind");
@@ -23947,21 +23947,21 @@ HEATDIFF_API hd_status hd_spectrum_distance(const hd_spectrum *s, hd_distance_ki
 HEATDIFF_API hd_status hd_heat_apply(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                      const double *F, size_t ldf, double *U, size_t ldu, hd_report *report,
                                      hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
+    const hdi_request ask = {HDI_ITEM_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
     return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_derivative(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                           const double *F, size_t ldf, double *U, size_t ldu,
                                           hd_report *report, hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
+    const hdi_request ask = {HDI_ITEM_FIELD, k, n_times, t, F, NULL, NULL, NULL, U, ldf, ldu, 0};
     return hdi_fields_run(heat, &ask, 1, report, err);
 }
 
 HEATDIFF_API hd_status hd_heat_adjoint(hd_heat *heat, int32_t n_times, const double *t, int32_t k,
                                        const double *G, size_t ldg, double *U, size_t ldu,
                                        hd_report *report, hd_error *err) {
-    const hdi_request ask = {HDI_QUERY_ADJOINT, k, n_times, t, G, NULL, NULL, NULL, U, ldg, ldu, 0};
+    const hdi_request ask = {HDI_ITEM_ADJOINT, k, n_times, t, G, NULL, NULL, NULL, U, ldg, ldu, 0};
     return hdi_fields_run(heat, &ask, 0, report, err);
 }
 
@@ -24059,7 +24059,7 @@ HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, doub
 
 HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
                                         int32_t k, hd_estimate *estimate, hd_error *err) {
-    const hdi_query as = query == HD_QUERY_FIELDS ? HDI_QUERY_FIELD : HDI_QUERY_SYMMETRIC;
+    const hdi_item as = query == HD_QUERY_FIELDS ? HDI_ITEM_FIELD : HDI_ITEM_SYMMETRIC;
     hdi_heat_call h;
     hd_estimate found;
     hd_status status;
