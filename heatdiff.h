@@ -9872,12 +9872,12 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int64_t row = (int64_t)f->width * z->k;
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
+    const double *x = z->x;
     double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
-    for (i = 0; row == 1 && i < u; i++) rows[i] = z->x[idx[i]];
-    for (; i < u; i++)
-        for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
+    for (i = 0; row == 1 && i < u; i++) rows[i] = x[idx[i]];
+    for (; i < u; i++) memcpy(rows + row * i, x + row * idx[i], (size_t)row * sizeof *x);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
@@ -9912,11 +9912,8 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const int64_t w = (int64_t)f->width * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
     const char *only = z->backward ? z->wanted : z->active;
-    int64_t i;
     if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
-    for (i = 0; i < w * hdi_front_pivots(f->sym, v); i += 8)
-        HDI_PREFETCH_AT(y, z->backward ? i - 64 * w : i + 64 * w);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
         return;
