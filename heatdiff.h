@@ -9856,8 +9856,9 @@ static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
     const double *d = z->f->dinv + (int64_t)width * z->f->sym->super[v];
     double t[HDI_PACK];
-    int32_t i, r;
-    for (i = 0; i < p; i++, d += width) {
+    int32_t i = 0, r;
+    for (; width * z->k == 1 && i < p; i++) y[i] *= d[i];
+    for (; i < p; i++, d += width) {
         for (r = 0; r < z->k; r++, y += width) {
             hdi_entry_copy(width, t, y);
             hdi_entry_times(width, t, d, y);
