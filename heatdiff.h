@@ -2945,7 +2945,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
-#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH < 4 ? 1 : HDI_WIDTH / 2)  /* whose sums registers hold */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)  /* whose sums registers hold */
 #endif
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
@@ -3454,6 +3454,9 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
         if (HDI_RESIDUAL_BLOCKS > 1 && HDI_HAS_POLE_FACTORS && !g->real)
             for (; r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
                 HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
+        if (HDI_RESIDUAL_BLOCKS > 4 && HDI_HAS_POLE_FACTORS && !g->real)
+            for (; r + 4 <= g->n_blocks; r += 4)
+                HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS > 4 ? 4 : 1, 0, g, i, r);
         if (HDI_HAS_POLE_FACTORS && !g->real)
             for (; r < g->n_blocks; r++) HDI_OF(residual_row)(1, 0, g, i, r);
         else HDI_OF(residual_row)(1, 1, g, i, 0);
