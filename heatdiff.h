@@ -2897,6 +2897,7 @@ HDI_IN8 __m512d hdi_load_rows_avx512(const double *p, uint32_t g, int32_t q) {
 HDI_IN8 void hdi_store_rows_avx512(double *p, __m512d v, uint32_t g, int32_t q) {
     _mm512_mask_storeu_pd(p, (__mmask8)(g >> q & 0xffu), v);
 }
+HDI_IN8 double hdi_total_avx512(__m512d v) { return _mm512_reduce_add_pd(v); }
 /* (x, x) of four doubles */
 HDI_IN8 __m512d hdi_twice_avx512(const double *x) { return _mm512_broadcast_f64x4(_mm256_loadu_pd(x)); }
 /* The sum of products of a pack entry (re, im) from its two parts: p - swap(q) below, p + swap(q) above. */
@@ -2945,7 +2946,7 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
-#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 4 ? 2 : 1)             /* whose sums registers hold */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)  /* whose sums registers hold */
 #endif
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
@@ -3376,10 +3377,8 @@ HDI_KERNEL void HDI_OF(add)(double *y, const double *x, int64_t n) {
 }
 
 /* ---- rows of L and B against blocks ---- */
-/* They are bound by memory, as is one real right-hand side: AVX-512 takes AVX2's kernels. */
 
-#if HDI_WIDTH <= 4
-enum { HDI_OF(residual_ahead) = 8 };
+enum { HDI_OF(residual_ahead) = 28 };            /* entries whose rows of X are fetched */
 #define HDI_VECS (8 / HDI_WIDTH)                 /* vectors of eight numbers */
 
 /* Row i of block r is complete: x, and its products l and b with L and B. */
@@ -3396,7 +3395,8 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
         hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
         if (real) rest = HDI_OF(load)(f + at);
-        if (!real) z = at < 4 ? HDI_OF(fnma)(im, b[other], z) : HDI_OF(fma)(im, b[other], z);
+        if (!real && HDI_WIDTH == 8) z = HDI_OF(join)(z, im * b[0]);
+        else if (!real) z = at < 4 ? HDI_OF(fnma)(im, b[other], z) : HDI_OF(fma)(im, b[other], z);
         rest = HDI_OF(fnma)(t, l[k], rest) - z;
         if (real && g->r) HDI_OF(store)(g->r + 8 * i + at, rest);
         if (real && g->bx) HDI_OF(store)(g->bx + 8 * i + at, b[k]);
@@ -3419,10 +3419,10 @@ HDI_PART void HDI_OF(residual_row)(const int n, const int real, const hdi_residu
     const double *x = g->x + 8 * (int64_t)r, *own = x + i * g->stride;
     const hdi_vec zero = HDI_OF(all)(0), mass = g->b ? zero : HDI_OF(all)(g->mass[i]);
     hdi_vec l[HDI_RESIDUAL_BLOCKS][HDI_VECS], b[HDI_RESIDUAL_BLOCKS][HDI_VECS];
+    const int64_t last = g->row_ptr[g->end] - 1;
     int64_t p;
     int q, k;
     HDI_EACH(q, n) {
-        HDI_PREFETCH_AT(own, HDI_OF(residual_ahead) * g->stride + 8 * q);
         HDI_EACH(k, HDI_VECS) {
             l[q][k] = zero;
             b[q][k] = mass * HDI_OF(load)(own + 8 * q + k * HDI_WIDTH);
@@ -3430,6 +3430,8 @@ HDI_PART void HDI_OF(residual_row)(const int n, const int real, const hdi_residu
     }
     for (p = g->row_ptr[i]; p < g->row_ptr[i + 1] && (g->l || g->b); p++) {
         const double *from = x + g->stride * g->col[p];
+        const double *next = x + g->stride * g->col[hdi_least(p + HDI_OF(residual_ahead), last)];
+        HDI_EACH(q, n) HDI_PREFETCH(next + 8 * q);
         const hdi_vec lp = g->l ? HDI_OF(all)(g->l[p]) : zero, bp = g->b ? HDI_OF(all)(g->b[p]) : zero;
         HDI_EACH(q, n)
             HDI_EACH(k, HDI_VECS) {
@@ -3453,6 +3455,9 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
         if (HDI_RESIDUAL_BLOCKS > 1 && HDI_HAS_POLE_FACTORS && !g->real)
             for (; r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
                 HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
+        if (HDI_RESIDUAL_BLOCKS > 4 && HDI_HAS_POLE_FACTORS && !g->real)
+            for (; r + 4 <= g->n_blocks; r += 4)
+                HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS > 4 ? 4 : 1, 0, g, i, r);
         if (HDI_HAS_POLE_FACTORS && !g->real)
             for (; r < g->n_blocks; r++) HDI_OF(residual_row)(1, 0, g, i, r);
         else HDI_OF(residual_row)(1, 1, g, i, 0);
@@ -3460,7 +3465,9 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
 }
 
 /* ---- one real right-hand side: a vector goes along the rows ---- */
+/* It is bound by memory: AVX-512 takes AVX2's kernels. */
 
+#if HDI_WIDTH <= 4
 /* Row i of the eight columns from l on; missing ones are the last one again. */
 HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
     int j;
@@ -3569,7 +3576,7 @@ HDI_KERNEL void HDI_OF(pack_slices)(double *b, int64_t b_next, const double *x, 
 static const hdi_kernels *HDI_OF(real_kernels)(void) {
     static const hdi_kernels hdi_table = {
         1, HDI_OF(cols), HDI_OF(real_product), HDI_OF(real_solve), HDI_OF(real_slices), HDI_OF(add),
-        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_PASTE(residual, HDI_SOLO)
+        HDI_PASTE(single_up, HDI_SOLO), HDI_PASTE(single_down, HDI_SOLO), HDI_OF(residual)
     };
     return &hdi_table;
 }
@@ -3577,7 +3584,7 @@ static const hdi_kernels *HDI_OF(real_kernels)(void) {
 static const hdi_kernels *HDI_OF(pack_kernels)(void) {
     static const hdi_kernels hdi_table = {
         HDI_PACK, HDI_OF(pack_cols), HDI_OF(pack_product), HDI_OF(pack_solve), HDI_OF(pack_slices),
-        HDI_OF(add), NULL, NULL, HDI_PASTE(residual, HDI_SOLO)
+        HDI_OF(add), NULL, NULL, HDI_OF(residual)
     };
     return &hdi_table;
 }
@@ -6073,12 +6080,14 @@ static void hdi_intrinsic_opts(hd_triangulation which, double mollify, hdi_input
         (void)HDI_LEFT_OUT(e, INTRINSIC, "intrinsic triangulations");
 }
 
-/* y = (alpha L + beta B) x on rows. */
+/* y = (alpha L + beta B) x on rows. A matrix that counts nothing is not read. */
 static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta,
                            const double *HDI_RESTRICT x, double *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = lap->L.row_ptr;
     const int32_t *HDI_RESTRICT Aj = lap->L.col;
-    const double *HDI_RESTRICT Lx = lap->L.val, *HDI_RESTRICT Bx = beta != 0 ? lap->B : NULL;
+    const double *HDI_RESTRICT Lx = alpha != 0 ? lap->L.val : lap->B;
+    const double *HDI_RESTRICT Bx = alpha != 0 && beta != 0 ? lap->B : NULL;
+    const double first = alpha != 0 ? alpha : beta, second = Bx || !lap->B ? beta : 0;
     int32_t i;
     int64_t p = 0;
     for (i = 0; i < lap->n_active; i++) {
@@ -6092,10 +6101,10 @@ static void hdi_pair_apply(const hd_laplacian *lap, double alpha, double beta,
                 b += Bx[p] * x[Aj[p]];
             }
         } else {
-            for (; p < Ap[i + 1]; p++) l += Lx[p] * x[Aj[p]];
+            for (; Lx && p < Ap[i + 1]; p++) l += Lx[p] * x[Aj[p]];
             b = lap->mass[i] * x[i];
         }
-        y[i] = alpha * l + beta * b;
+        y[i] = first * l + second * b;
     }
 }
 
@@ -6134,7 +6143,8 @@ static void hdi_component_sums(const hd_laplacian *lap, const double *weight, co
         return;
     }
     memset(out, 0, (size_t)lap->n_components * sizeof *out);
-    for (i = 0; i < lap->n_active; i++) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
+    for (i = 0; i < lap->n_active; i++)
+        if (x[i] != 0) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
 }
 
 /* x_i += value[component of i] */
@@ -9731,19 +9741,11 @@ typedef struct hdi_sweep {
     int32_t *pending, *order;    /* [2 nodes] what they wait for; nodes as they become ready */
 } hdi_sweep;
 
-/* to[rel[i]] += from[i] for entries [i,end) of w doubles, one or some eights. */
-static HDI_INLINE void hdi_sweep_add(int64_t w, double *to, const int32_t *rel, int64_t i, int64_t end,
-                                     const double *from) {
-    double sum[8];
-    int64_t q;
-    int e;
+/* to[rel[i]] += from[i] for entries [i,end) of w doubles. */
+static HDI_INLINE void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel,
+                                     int64_t i, int64_t end, const double *from) {
     for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
-    for (; i < end; i++) {
-        for (q = 0; q < w; q += 8) {
-            for (e = 0; e < 8; e++) sum[e] = to[w * rel[i] + q + e] + from[w * i + q + e];
-            memcpy(to + w * rel[i] + q, sum, sizeof sum);
-        }
-    }
+    for (; i < end; i++) o->add(to + w * rel[i], from + w * i, w);
 }
 
 /* The children's vectors, into the pivots' part of x and into t, which is cleared before. */
@@ -9757,8 +9759,8 @@ static void hdi_sweep_children(const hdi_sweep *z, int32_t v, double *y, double 
         const int64_t uc = hdi_front_below(s, c), inner = s->inner[c];
         const double *from = z->vec + w * s->vector[c];
         if (z->active && !z->active[c]) continue;
-        hdi_sweep_add(w, y, rel, 0, inner, from);
-        hdi_sweep_add(w, t - w * p, rel, inner, uc, from);
+        hdi_sweep_add(z->f->ops, w, y, rel, 0, inner, from);
+        hdi_sweep_add(z->f->ops, w, t - w * p, rel, inner, uc, from);
     }
 }
 
@@ -9858,8 +9860,9 @@ static void hdi_sweep_divide(const hdi_sweep *z, int32_t v, double *y) {
     const int32_t p = hdi_front_pivots(z->f->sym, v), width = z->f->width;
     const double *d = z->f->dinv + (int64_t)width * z->f->sym->super[v];
     double t[HDI_PACK];
-    int32_t i, r;
-    for (i = 0; i < p; i++, d += width) {
+    int32_t i = 0, r;
+    for (; width * z->k == 1 && i < p; i++) y[i] *= d[i];
+    for (; i < p; i++, d += width) {
         for (r = 0; r < z->k; r++, y += width) {
             hdi_entry_copy(width, t, y);
             hdi_entry_times(width, t, d, y);
@@ -9873,12 +9876,12 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
     const int64_t p = hdi_front_pivots(f->sym, v), u = hdi_front_below(f->sym, v);
     const int64_t row = (int64_t)f->width * z->k;
     const int32_t *idx = f->sym->row + f->sym->row_ptr[v];
+    const double *x = z->x;
     double *panel = f->panel + f->width * f->sym->panel[v];
     int64_t i, q;
     if (!hdi_sweep_clear(z, v, y)) hdi_sweep_divide(z, v, y);
-    for (i = 0; row == 1 && i < u; i++) rows[i] = z->x[idx[i]];
-    for (; i < u; i++)
-        for (q = 0; q < row; q += 8) hdi_entry_copy(8, rows + row * i + q, z->x + row * idx[i] + q);
+    for (i = 0; row == 1 && i < u; i++) rows[i] = x[idx[i]];
+    for (; i < u; i++) memcpy(rows + row * i, x + row * idx[i], (size_t)row * sizeof *x);
     for (q = (p - 1) / HDI_PANEL; q >= 0; q--) {
         const hdi_block b = hdi_block_of(panel, f->width, p + u, p, q);
         const int64_t end = b.begin + b.width;
@@ -9913,11 +9916,8 @@ static void hdi_sweep_front(const hdi_sweep *z, int32_t v) {
     const int64_t w = (int64_t)f->width * z->k;
     double *y = z->x + w * f->sym->super[v], *t = z->vec + w * f->sym->vector[v];
     const char *only = z->backward ? z->wanted : z->active;
-    int64_t i;
     if (only && !only[v]) return;
     hdi_factor_fetch(f, v, z->backward);
-    for (i = 0; i < w * hdi_front_pivots(f->sym, v); i += 8)
-        HDI_PREFETCH_AT(y, z->backward ? i - 64 * w : i + 64 * w);
     if (z->backward) {
         hdi_sweep_backward(z, v, y, t);
         return;
@@ -13579,10 +13579,10 @@ static void hdi_residual_run(hdi_residual *g, hd_context *ctx) {
 static void hdi_mass_apply(const hd_laplacian *lap, int32_t wide, const double *x, double *y,
                            hd_context *ctx) {
     hdi_residual g;
-    int32_t i;
-    if (wide == 1 && lap->B) hdi_pair_apply(lap, 0, 1, x, y);
-    for (i = 0; wide == 1 && !lap->B && i < lap->n_active; i++) y[i] = lap->mass[i] * x[i];
-    if (wide == 1) return;
+    if (wide == 1) {
+        hdi_pair_apply(lap, 0, 1, x, y);
+        return;
+    }
     g = hdi_residual_open(lap, 0, x, 1, NULL);
     g.real = 1;
     g.l = NULL;
