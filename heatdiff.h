@@ -5736,18 +5736,26 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
-/* How many others there are at vertex v, and itself. */
+/* Takes seat w, and says whether it was free. */
+static HDI_INLINE int hdi_seat_take(uint32_t *seat, uint32_t base, int32_t w) {
+    const int fresh = seat[w] < base;
+    seat[w] = base;
+    return fresh;
+}
+
+/* How many others there are at vertex v, and itself. Faces with an area have three corners at least. */
 static int32_t hdi_ring_count(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
     uint32_t *seat = r->seat, base = ++r->base;
-    int32_t n = 1;
-    int64_t p, d;
-    seat[v] = base;
+    int32_t n = hdi_seat_take(seat, base, v);
+    int64_t p, k;
     for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
         const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
-        for (d = hdi_face_begin(mesh, f); d < hdi_face_begin(mesh, f + 1); d++) {
-            n += seat[mesh->tri[d]] < base;
-            seat[mesh->tri[d]] = base;
-        }
+        const int64_t begin = hdi_face_begin(mesh, f), size = hdi_face_begin(mesh, f + 1) - begin;
+        const int32_t *w = mesh->tri + begin;
+        n += hdi_seat_take(seat, base, w[0]);
+        n += hdi_seat_take(seat, base, w[1]);
+        n += hdi_seat_take(seat, base, w[2]);
+        for (k = 3; k < size; k++) n += hdi_seat_take(seat, base, w[k]);
     }
     return n;
 }
@@ -9330,16 +9338,15 @@ static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r
     const int64_t u = hdi_front_below(s, c), inner = s->inner[c];
     const int64_t from = r0 == 0 ? 0 : r0 == w->p ? inner : hdi_lower_bound(rel, u, r0);
     const int64_t end = r1 == w->m ? u : hdi_lower_bound(rel, u, r1);
-    const double *child = f->work + width * s->update[c];
     int32_t run[HDI_FRONT_RUNS + 1], first = 0, n, q;
     int64_t i, j = below ? inner : 0;
+    const double *x = f->work + width * (s->update[c] + hdi_triangle_column(u, j) - j);
     const int64_t j1 = below ? end : hdi_least(inner, end);
     hdi_block b = hdi_front_block(w, 0);
     if (from == end) return;
     n = hdi_front_runs(rel, from, end, width, run);
-    for (; j < j1; j++) {
+    for (; j < j1; j++, x += width * (u - j)) {
         const int64_t i0 = hdi_most(from, j), at = rel[j];
-        const double *x = child + width * (hdi_triangle_column(u, j) - j);
         double *y = w->update + width * (hdi_triangle_column(w->u, at - w->p) - at);
         if (!below) {
             if (at >= b.begin + HDI_PANEL) b = hdi_front_block(w, at / HDI_PANEL);
@@ -9365,9 +9372,11 @@ static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int b
 /* Rows [r0,r1) of the panel: cleared, entries of A, children. */
 static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
+    const hdi_values *values = w->f->values;
     const int32_t width = w->f->width;
     hdi_block own = hdi_front_block(w, 0);
     int64_t q, k;
+    int32_t row;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
         const hdi_block b = hdi_front_block(w, q);
         const int64_t first = hdi_most(r0, b.begin);
@@ -9379,8 +9388,8 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i < r0 || i >= r1) continue;
         if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
-        hdi_values_at(w->f->values, width, s->a_from[q], i == j ? s->perm[s->super[w->v] + j] : -1,
-                      hdi_block_at(&own, i, j));
+        row = values->b_diag && i == j ? s->perm[s->super[w->v] + j] : -1;
+        hdi_values_at(values, width, s->a_from[q], row, hdi_block_at(&own, i, j));
     }
     hdi_front_children(w, r0, r1, 0);
 }
@@ -9402,6 +9411,7 @@ static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t
     const int64_t end = own ? k : to.begin;
     hdi_product g;
     int64_t q;
+    if (end == 0) return;
     memset(&g, 0, sizeof g);
     g.c = hdi_block_at(&to, r0, k);
     g.c_col = to.ld;
@@ -22764,17 +22774,18 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
 }
 
 /* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
- * order, replaced by those of the identity. */
+ * order, replaced by those of the identity. gone [n_active]: work. */
 static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int heat, const char *away,
-                           double *val) {
+                           char *gone, double *val) {
+    const hd_csr *L = &lap->L;
     int64_t p;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t row = g->row[lap->vertex[i]];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t k = g->row[lap->vertex[lap->L.col[p]]];
-            val[p] = g->copies * lap->L.val[p] + (row == k && heat ? g->mass[row] : 0);
-            if (away && (away[row] || away[k])) val[p] = row == k;
+    for (i = 0; i < L->n_rows; i++) gone[i] = away && away[g->row[lap->vertex[i]]];
+    for (i = 0; i < L->n_rows; i++) {
+        const double own = heat ? g->mass[g->row[lap->vertex[i]]] : 0;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) {
+            val[p] = g->copies * L->val[p] + (L->col[p] == i ? own : 0);
+            if (gone[i] | gone[L->col[p]]) val[p] = L->col[p] == i;
         }
     }
 }
@@ -22784,7 +22795,7 @@ static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int he
 static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     double *val = HDI_TAKE(&s, double, lap->L.nnz);
-    char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active);
+    char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active), *gone = HDI_TAKE(&s, char, g->n_active);
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     /* the last factor, and what is kept of those before */
     const uint64_t need = hdi_factor_bytes(&g->sym, 1) +
@@ -22800,7 +22811,7 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     for (q = 0; q < HDI_GEO_FACTORS && e->status >= 0; q++) {
         hdi_factor *f = g->factor + q;
         if (q == HDI_GEO_COLD && !mean) continue;
-        hdi_geo_matrix(g, lap, q != HDI_GEO_POISSON, away[q], val);
+        hdi_geo_matrix(g, lap, q != HDI_GEO_POISSON, away[q], gone, val);
         if (hdi_factor_make(f, NULL, &g->sym, 1, g->ctx, e) >= 0 && hdi_factor_run(f, &v, e) >= 0)
             hdi_factor_settle(f);
     }
