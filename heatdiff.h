@@ -1627,7 +1627,7 @@ static double hdi_bytes_left(const hd_context *ctx) {
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
-static HDI_COLD hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
+static HDI_NOINLINE hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = (double)more + (double)ctx->bytes_in_use;
     if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
@@ -9326,7 +9326,7 @@ static int32_t hdi_front_runs(const int32_t *rel, int64_t from, int64_t end, int
         run[n++] = i;
     }
     run[n] = (int32_t)end;
-    return width == 1 && end - from < 4 * n ? 0 : n;
+    return width == 1 && end - from < 8 * n ? 0 : n;
 }
 
 /* Rows of child c's update matrix that fall into rows [r0,r1) of the front, added to it: the columns that are
@@ -22663,17 +22663,18 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
  * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that
  * nothing is cancelled, and the height is as small as it can be and keeps its relative precision. */
 static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
+    const double unit = 0.5 / g->h;
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
         const int32_t f = g->from[k], *v = mesh->tri + hdi_triple(f), n = mesh->copies ? mesh->copies[f] : 1;
-        const double *cot = mesh->cot + hdi_triple(f), weight = n / g->copies;
+        const double *cot = mesh->cot + hdi_triple(f), part = g->copies / n;
         const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
         const int a = (apex + 1) % 3, b = (apex + 2) % 3;
-        const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
+        const double twice = 2 * part * mesh->area[f], length = sqrt(twice * part * (cot[a] + cot[b]));
         hdi_geo_face *out = g->face + k;
-        out->l = length / 2 / g->h;
-        out->q = twice / length / 2 / g->h;
-        out->p = out->q * (cot[a] / weight);
+        out->l = length * unit;
+        out->q = twice / length * unit;
+        out->p = out->q * part * cot[a];
         out->v[0] = g->row[v[a]];
         out->v[1] = g->row[v[b]];
         out->v[2] = g->row[v[apex]];
