@@ -5736,7 +5736,7 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
-/* Takes seat w, and says whether it was free. */
+/* Takes the seat of w. Returns whether it was free. */
 static HDI_INLINE int hdi_seat_take(uint32_t *seat, uint32_t base, int32_t w) {
     const int fresh = seat[w] < base;
     seat[w] = base;
@@ -5819,10 +5819,9 @@ static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v,
         if (r.at[k].L > 0 && r.at[k].L <= 1e-13 * r.at[k].size) r.at[k].L = 0;
 }
 
-static void hdi_rows_ring(hdi_rows *x, int64_t strand, int32_t v) {
-    const hdi_mesh *mesh = &x->mesh;
-    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(x->ring + strand, mesh, v, 1);
-    else hdi_ring_make(x->ring + strand, mesh, v, 0);
+static void hdi_ring_of(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
+    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(r, mesh, v, 1);
+    else hdi_ring_make(r, mesh, v, 0);
 }
 
 static double hdi_vertex_mass(const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t v) {
@@ -5899,19 +5898,18 @@ static void hdi_rows_fill(const hdi_rows *x, const hdi_ring *r, int32_t v, hdi_t
 }
 
 /* Vertex v: counts others, or fills its row. In covers faces repeat others by right. */
-static void hdi_rows_vertex(hdi_rows *x, int64_t strand, int32_t v, hdi_tally *t) {
+static void hdi_rows_vertex(hdi_rows *x, hdi_ring *r, int32_t v, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
-    hdi_ring *r = x->ring + strand;
     x->border[v] = 0;
     if (x->counting) x->count[v] = -1;
     if (mesh->at[v] == mesh->at[v + 1]) return;
     if (x->counting) {
         x->count[v] = hdi_ring_count(r, mesh, v);
         if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, r->list);
-        return;
+    } else {
+        hdi_ring_of(r, mesh, v);
+        hdi_rows_fill(x, r, v, t);
     }
-    hdi_rows_ring(x, strand, v);
-    hdi_rows_fill(x, r, v, t);
 }
 
 static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
@@ -5923,7 +5921,7 @@ static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
     for (b = strand; b * size < n; b += x->strands) {
         x->mesh.tally[b] = hdi_tally_none;
         for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++)
-            hdi_rows_vertex(x, strand, v, x->mesh.tally + b);
+            hdi_rows_vertex(x, x->ring + strand, v, x->mesh.tally + b);
     }
 }
 
@@ -5980,7 +5978,7 @@ static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, dou
     for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
         if (!x->border[v]) continue;
         rep->n_boundary_loops++;                 /* a set, until it is united with another one */
-        hdi_rows_ring(x, 0, v);
+        hdi_ring_of(x->ring, &x->mesh, v);
         for (k = 1; k < x->ring->n; k++)
             if (x->ring->at[k].faces == 1)
                 rep->n_boundary_loops -= hdi_unite(x->count, v, x->ring->at[k].to);
@@ -9376,7 +9374,6 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const int32_t width = w->f->width;
     hdi_block own = hdi_front_block(w, 0);
     int64_t q, k;
-    int32_t row;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
         const hdi_block b = hdi_front_block(w, q);
         const int64_t first = hdi_most(r0, b.begin);
@@ -9388,8 +9385,8 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i < r0 || i >= r1) continue;
         if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
-        row = values->b_diag && i == j ? s->perm[s->super[w->v] + j] : -1;
-        hdi_values_at(values, width, s->a_from[q], row, hdi_block_at(&own, i, j));
+        hdi_values_at(values, width, s->a_from[q],
+                      values->b_diag && i == j ? s->perm[s->super[w->v] + j] : -1, hdi_block_at(&own, i, j));
     }
     hdi_front_children(w, r0, r1, 0);
 }
