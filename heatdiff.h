@@ -1628,7 +1628,7 @@ static double hdi_bytes_left(const hd_context *ctx) {
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
-static HDI_COLD hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
+static HDI_NOINLINE hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
     const double all = (double)more + (double)ctx->bytes_in_use;
     if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
@@ -4244,12 +4244,12 @@ static const double *hdi_corner_at(const hdi_mesh *mesh, int64_t c) {
 }
 
 /* The corners of the same face before and after c. */
-static int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
+static HDI_INLINE int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
     const int32_t f = hdi_corner_face(mesh, c);
     return c > hdi_face_begin(mesh, f) ? c - 1 : hdi_face_begin(mesh, f + 1) - 1;
 }
 
-static int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
+static HDI_INLINE int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
     const int32_t f = hdi_corner_face(mesh, c);
     return c + 1 < hdi_face_begin(mesh, f + 1) ? c + 1 : hdi_face_begin(mesh, f);
 }
@@ -4715,11 +4715,14 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
 static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t v, hdi_pair *face) {
     int32_t p, q, n = 0, count = 0;
     int64_t at, d;
-    for (at = mesh->at[v]; at < mesh->at[v + 1]; at++) {
+    for (at = mesh->at[v + 1]; at-- > mesh->at[v];) {
         const int32_t c = mesh->corner[at], f = hdi_corner_face(mesh, c);
-        int smallest = 1;
-        for (d = hdi_face_begin(mesh, f); d < hdi_face_begin(mesh, f + 1); d++) smallest &= mesh->tri[d] >= v;
-        face[n].key = hdi_corner_key(mesh, c);
+        const uint64_t key = hdi_corner_key(mesh, c);
+        int smallest = key >> 32 >= (uint64_t)v;
+        for (d = hdi_face_begin(mesh, f); smallest && d < hdi_face_begin(mesh, f + 1); d++)
+            smallest = mesh->tri[d] >= v;
+        if (!smallest && !mesh->len) break;      /* faces are sorted by their smallest corners */
+        face[n].key = key;
         face[n].id = c;
         n += smallest;
     }
@@ -5498,7 +5501,16 @@ typedef struct hdi_entry {
     int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
 } hdi_entry;
 
-/* Blocks of vertices are worked on by so many tasks, each with its own list. */
+/* A vertex and the others that it shares something with. */
+typedef struct hdi_ring {
+    int32_t n;
+    uint32_t base;
+    uint32_t *seat;             /* [vertices] base plus the number of its entry; below base: it has none */
+    hdi_entry *at;              /* [most] zeros from n on */
+    hdi_pair *list;             /* [most] work */
+} hdi_ring;
+
+/* Blocks of vertices are worked on by so many tasks, each with its own ring. */
 enum { HDI_STRANDS = 8 };
 
 /* Rows of a mesh, and work. Updates of a mesh keep one; those of the caller's matrices need nothing. */
@@ -5506,9 +5518,8 @@ typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
     int32_t strands;
-    int64_t most;               /* room of a list */
-    hdi_pair *list;             /* [strands most], see hdi_ring_list */
-    int counting;               /* the entries of rows */
+    hdi_ring ring[HDI_STRANDS];
+    int counting;               /* the entries of rows are counted */
     int32_t *count;             /* [n] entries of a row, -1: the vertex has no face; then work */
     char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
@@ -5713,7 +5724,7 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
 
 /* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
  * same to the last bit for (d, c). */
-static double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t k, int beside) {
+static HDI_INLINE double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t k, int beside) {
     const double *u = mesh->w + 2 * c, *v = mesh->w + 2 * d,
                  first = hdi_dot3(mesh->g + 3 * c, mesh->g + 3 * d);
     return k == 3 ? first : first - mesh->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
@@ -5733,55 +5744,92 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
-/* Behind the last pair of a list. */
-#define HDI_RING_END UINT64_MAX
-
-/* What vertex v shares with others: at each of its corners c the other corners d of the face, as pairs of
- * their vertices and of c and d, sorted by these. Before its own pairs v has one more. */
-static void hdi_ring_list(const hdi_mesh *mesh, int32_t v, hdi_pair *list) {
-    int64_t p, d, n = 1;
-    list->key = (uint64_t)v;
-    list->id = 0;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        const int64_t c = mesh->corner[p];
-        const int32_t f = hdi_corner_face(mesh, c);
-        for (d = hdi_face_begin(mesh, f); d < hdi_face_begin(mesh, f + 1); d++) {
-            if (d == c) continue;
-            list[n].key = (uint64_t)mesh->tri[d];
-            list[n++].id = c << 32 | d;
-        }
-    }
-    hdi_sort_pairs(list, n);
-    list[n].key = HDI_RING_END;
+/* Takes the seat of w. Returns whether it was free. */
+static HDI_INLINE int hdi_seat_take(uint32_t *seat, uint32_t base, int32_t w) {
+    const int fresh = seat[w] < base;
+    seat[w] = base;
+    return fresh;
 }
 
-/* Adds what the face of corners c and d adds to their entry. */
-static HDI_INLINE void hdi_entry_add(hdi_entry *e, const hdi_mesh *mesh, int64_t c, int64_t d) {
-    const int32_t f = hdi_corner_face(mesh, c), copies = hdi_copies(mesh, f),
-                  odd = mesh->odd ? mesh->odd[f] : 0;
-    const int64_t begin = hdi_face_begin(mesh, f), end = hdi_face_begin(mesh, f + 1), k = end - begin;
-    const int after = d == (c + 1 < end ? c + 1 : begin), before = c == (d + 1 < end ? d + 1 : begin);
+/* How many others there are at vertex v, and itself. Faces with an area have three corners at least. */
+static int32_t hdi_ring_count(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
+    uint32_t *seat = r->seat, base = ++r->base;
+    int32_t n = hdi_seat_take(seat, base, v);
+    int64_t p, k;
+    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
+        const int64_t begin = hdi_face_begin(mesh, f), size = hdi_face_begin(mesh, f + 1) - begin;
+        const int32_t *w = mesh->tri + begin;
+        n += hdi_seat_take(seat, base, w[0]);
+        n += hdi_seat_take(seat, base, w[1]);
+        n += hdi_seat_take(seat, base, w[2]);
+        for (k = 3; k < size; k++) n += hdi_seat_take(seat, base, w[k]);
+    }
+    return n;
+}
+
+/* Adds what face f adds to the entry of the vertex at its corner d; c: the corner of the ring's own vertex.
+ * after: d is the next one; beside: it shares an edge with c. */
+static HDI_INLINE void hdi_ring_add(hdi_ring *r, const hdi_mesh *mesh, int32_t f, int64_t c, int64_t d,
+                                    int after, int beside) {
+    const int32_t copies = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, w = mesh->tri[d];
+    const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_begin(mesh, f + 1) - begin;
+    const uint32_t last = (uint32_t)r->n, seat = r->seat[w] - r->base, at = seat < last ? seat : last;
     const double *cot = mesh->cot + begin;
+    hdi_entry *e = r->at + at;
+    r->n += at == last;
+    r->seat[w] = r->base + at;
+    e->to = w;
     if (!(mesh->area[f] > 0)) return;
-    if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, d, k, after | before);
+    if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, d, k, beside);
     else e->L -= cot[3 + 2 * begin - c - d] / 2;
     if (mesh->len) e->size = mesh->len[after ? c : d];
     else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
     e->B += mesh->area[f];
-    e->faces += after | before ? copies : 0;
+    e->faces += beside ? copies : 0;
     e->forward += after ? copies - odd : odd;
 }
 
-/* The entry that p begins with, p at one of a list. Returns where the next one begins. Without coordinates,
- * weights above zero, which are there by rounding only, become zero when they are below 1e-13 of the
- * cotangents that they are made of. */
-static const hdi_pair *hdi_ring_entry(const hdi_mesh *mesh, const hdi_pair *p, hdi_entry *e) {
-    memset(e, 0, sizeof *e);
-    e->to = (int32_t)p->key;
-    for (p += p->id == 0; p->key == (uint64_t)e->to; p++)
-        hdi_entry_add(e, mesh, p->id >> 32, p->id & 0xffffffff);
-    if (!mesh->xyz && !mesh->len && e->L > 0 && e->L <= 1e-13 * e->size) e->L = 0;
-    return p;
+/* What vertex v shares with itself, and then with each other one: sums over the faces, in their order. plain:
+ * triangles in space, without copies. Without coordinates, weights above zero, which are there by rounding
+ * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
+static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v, int plain) {
+    hdi_mesh mesh = *m;                          /* local, as what is written below is not part of it */
+    hdi_ring r = *to;
+    int64_t p, q;
+    int32_t k;
+    if (plain) {                                 /* as the compiler is to know */
+        mesh.ptr = NULL;
+        mesh.len = NULL;
+        mesh.copies = mesh.odd = NULL;
+    }
+    memset(r.at, 0, (size_t)r.n * sizeof *r.at);
+    if (r.base > UINT32_MAX / 2) memset(r.seat, 0, (size_t)mesh.n * sizeof *r.seat);
+    r.base = r.base > UINT32_MAX / 2 ? 1 : r.base + (uint32_t)r.n + 1;
+    r.n = 1;
+    r.at->to = v;
+    r.seat[v] = r.base;
+    for (p = mesh.at[v]; p < m->at[v + 1]; p++) {
+        const int64_t c = mesh.corner[p];
+        const int32_t f = hdi_corner_face(&mesh, c);
+        const int64_t begin = hdi_face_begin(&mesh, f), end = hdi_face_begin(&mesh, f + 1);
+        const int64_t next = c + 1 < end ? c + 1 : begin, before = c > begin ? c - 1 : end - 1;
+        if (plain) {
+            hdi_ring_add(&r, &mesh, f, c, next, 1, 1);
+            hdi_ring_add(&r, &mesh, f, c, before, 0, 1);
+            continue;
+        }
+        for (q = begin; q < end; q++)
+            if (q != c) hdi_ring_add(&r, &mesh, f, c, q, q == next, q == next || q == before);
+    }
+    *to = r;
+    for (k = 0; k < r.n && !mesh.xyz && !mesh.len; k++)
+        if (r.at[k].L > 0 && r.at[k].L <= 1e-13 * r.at[k].size) r.at[k].L = 0;
+}
+
+static void hdi_ring_of(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
+    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(r, mesh, v, 1);
+    else hdi_ring_make(r, mesh, v, 0);
 }
 
 static double hdi_vertex_mass(const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t v) {
@@ -5806,40 +5854,44 @@ static HDI_INLINE void hdi_rows_edge(const hdi_rows *x, int32_t v, const hdi_ent
     t->n[HDI_NEGATIVE] += e->L > 0;
     if (e->faces == 0 || (!mesh->xyz && !mesh->len)) return;
     t->n[HDI_EDGES]++;
-    t->n[HDI_BOUNDARY] += e->faces == 1;
-    t->n[HDI_NONMANIFOLD] += e->faces > 2;
-    t->n[HDI_MISORIENTED] += (e->faces == 2) & (e->forward != 1);
+    if (e->faces == 1) t->n[HDI_BOUNDARY]++;
+    else if (e->faces > 2) t->n[HDI_NONMANIFOLD]++;
+    else if (e->forward != 1) t->n[HDI_MISORIENTED]++;
     t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
 }
 
 /* Counts the edges of vertex v, and fills its row in L and B, if it has one. A column without a row adds to
  * the diagonal and is not written; its room, which updates do not have any more, is marked. An edge from the
  * vertex to itself has no weight, and is twice in its B. */
-static void hdi_rows_fill(const hdi_rows *x, const hdi_pair *p, int32_t v, hdi_tally *t) {
+static void hdi_rows_fill(const hdi_rows *x, const hdi_ring *r, int32_t v, hdi_tally *t) {
     hd_laplacian *lap = x->lap;
     const int32_t i = lap ? lap->row[v] : -1;
     double *B = lap ? lap->B : NULL, sum = 0, b_sum = 0, b_own = 0;
     int64_t at = i < 0 ? 0 : lap->L.row_ptr[i], diagonal = 0;
     int held = 0, leaks = 0;
-    while (p->key != HDI_RING_END) {
-        hdi_entry e;
-        int32_t j;
-        p = hdi_ring_entry(&x->mesh, p, &e);
-        hdi_rows_edge(x, v, &e, t);
+    int32_t k;
+    for (k = 0; k < r->n; k++) {
+        r->list[k].key = (uint64_t)r->at[k].to;
+        r->list[k].id = k;
+    }
+    hdi_sort_pairs(r->list, r->n);
+    for (k = 0; k < r->n; k++) {
+        const hdi_entry *e = r->at + r->list[k].id;
+        const int32_t j = i < 0 ? -1 : lap->row[e->to];
+        hdi_rows_edge(x, v, e, t);
         if (i < 0) continue;
-        j = lap->row[e.to];
         if (j == i) {
             diagonal = at++;
-            b_own = e.B / 12;
+            b_own = e->B / 12;
             continue;
         }
-        sum += e.L;
+        sum += e->L;
         held |= j < 0;
-        leaks |= j < 0 && e.L != 0;
+        leaks |= j < 0 && e->L != 0;
         if (j < 0) continue;
         lap->L.col[at] = j;
-        lap->L.val[at] = e.L;
-        if (B) b_sum += B[at] = e.B / 12;
+        lap->L.val[at] = e->L;
+        if (B) b_sum += B[at] = e->B / 12;
         at++;
     }
     if (i < 0) return;
@@ -5854,16 +5906,18 @@ static void hdi_rows_fill(const hdi_rows *x, const hdi_pair *p, int32_t v, hdi_t
 }
 
 /* Vertex v: counts others, or fills its row. In covers faces repeat others by right. */
-static void hdi_rows_vertex(hdi_rows *x, hdi_pair *list, int32_t v, hdi_tally *t) {
+static void hdi_rows_vertex(hdi_rows *x, hdi_ring *r, int32_t v, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
-    const hdi_pair *p;
     x->border[v] = 0;
-    if (x->counting) x->count[v] = -(mesh->at[v] == mesh->at[v + 1]);
+    if (x->counting) x->count[v] = -1;
     if (mesh->at[v] == mesh->at[v + 1]) return;
-    hdi_ring_list(mesh, v, list);
-    for (p = list; x->counting && p->key != HDI_RING_END; p++) x->count[v] += p->key != p[1].key;
-    if (!x->counting) hdi_rows_fill(x, list, v, t);
-    else if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, list);
+    if (x->counting) {
+        x->count[v] = hdi_ring_count(r, mesh, v);
+        if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, r->list);
+    } else {
+        hdi_ring_of(r, mesh, v);
+        hdi_rows_fill(x, r, v, t);
+    }
 }
 
 static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
@@ -5875,7 +5929,7 @@ static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
     for (b = strand; b * size < n; b += x->strands) {
         x->mesh.tally[b] = hdi_tally_none;
         for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++)
-            hdi_rows_vertex(x, x->list + strand * x->most, v, x->mesh.tally + b);
+            hdi_rows_vertex(x, x->ring + strand, v, x->mesh.tally + b);
     }
 }
 
@@ -5890,21 +5944,31 @@ static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
 static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     const int32_t n = mesh->n;
     int32_t v, repeated;
-    int64_t p;
+    int64_t p, most = 0;
+    hdi_ring all;
     memset(x, 0, sizeof *x);
+    memset(&all, 0, sizeof all);
     x->mesh = *mesh;
     x->strands = hdi_is_serial(s->ctx) ? 1 : hdi_low32(HDI_STRANDS, n / (int32_t)hdi_block_size(n) + 1);
     for (v = 0, p = 0; v < n; v++) {
-        int64_t all = 8;                         /* both ends, and no line of a cache is shared */
+        int64_t here = 8;                        /* itself, and no line of a cache is shared */
         for (; p < mesh->at[v + 1]; p++) {
             const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
-            all += hdi_face_begin(mesh, f + 1) - hdi_face_begin(mesh, f) - 1;
+            here += hdi_face_begin(mesh, f + 1) - hdi_face_begin(mesh, f) - 1;
         }
-        x->most = hdi_most(x->most, all);
+        most = hdi_most(most, here);
     }
     x->count = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
-    x->list = HDI_TAKE(s, hdi_pair, x->strands * x->most);
+    all.at = HDI_TAKE_ZERO(s, hdi_entry, x->strands * most);
+    all.list = HDI_TAKE(s, hdi_pair, x->strands * most);
+    all.seat = HDI_TAKE_ZERO(s, uint32_t, x->strands * (int64_t)n);
+    for (v = 0; v < x->strands && s->e->status >= 0; v++) {
+        x->ring[v] = all;
+        all.at += most;
+        all.list += most;
+        all.seat += n;
+    }
     /* the stars of points have different faces, of which only edges are asked for */
     if (s->e->status < 0 || (mesh->copies && mesh->xyz)) return s->e->status;
     x->counting = 1;
@@ -5917,18 +5981,15 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
 
 /* What is known of the edges of a mesh in space, and their mean length. */
 static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, double *h) {
-    const hdi_pair *p;
-    hdi_entry entry;
-    int32_t v;
+    int32_t v, k;
     hdi_fill_own(x->count, x->mesh.n);
     for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
         if (!x->border[v]) continue;
         rep->n_boundary_loops++;                 /* a set, until it is united with another one */
-        hdi_ring_list(&x->mesh, v, x->list);
-        for (p = x->list; p->key != HDI_RING_END;) {
-            p = hdi_ring_entry(&x->mesh, p, &entry);
-            if (entry.faces == 1) rep->n_boundary_loops -= hdi_unite(x->count, v, entry.to);
-        }
+        hdi_ring_of(x->ring, &x->mesh, v);
+        for (k = 1; k < x->ring->n; k++)
+            if (x->ring->at[k].faces == 1)
+                rep->n_boundary_loops -= hdi_unite(x->count, v, x->ring->at[k].to);
     }
     rep->n_edges = all.n[HDI_EDGES];
     rep->n_boundary_edges = all.n[HDI_BOUNDARY];
@@ -9274,7 +9335,7 @@ static int32_t hdi_front_runs(const int32_t *rel, int64_t from, int64_t end, int
         run[n++] = i;
     }
     run[n] = (int32_t)end;
-    return width == 1 && end - from < 4 * n ? 0 : n;
+    return width == 1 && end - from < 8 * n ? 0 : n;
 }
 
 /* Rows of child c's update matrix that fall into rows [r0,r1) of the front, added to it: the columns that are
@@ -9286,16 +9347,15 @@ static void hdi_front_child(const hdi_front *w, int32_t c, int64_t r0, int64_t r
     const int64_t u = hdi_front_below(s, c), inner = s->inner[c];
     const int64_t from = r0 == 0 ? 0 : r0 == w->p ? inner : hdi_lower_bound(rel, u, r0);
     const int64_t end = r1 == w->m ? u : hdi_lower_bound(rel, u, r1);
-    const double *child = f->work + width * s->update[c];
     int32_t run[HDI_FRONT_RUNS + 1], first = 0, n, q;
     int64_t i, j = below ? inner : 0;
+    const double *x = f->work + width * (s->update[c] + hdi_triangle_column(u, j) - j);
     const int64_t j1 = below ? end : hdi_least(inner, end);
     hdi_block b = hdi_front_block(w, 0);
     if (from == end) return;
     n = hdi_front_runs(rel, from, end, width, run);
-    for (; j < j1; j++) {
+    for (; j < j1; j++, x += width * (u - j)) {
         const int64_t i0 = hdi_most(from, j), at = rel[j];
-        const double *x = child + width * (hdi_triangle_column(u, j) - j);
         double *y = w->update + width * (hdi_triangle_column(w->u, at - w->p) - at);
         if (!below) {
             if (at >= b.begin + HDI_PANEL) b = hdi_front_block(w, at / HDI_PANEL);
@@ -9321,6 +9381,7 @@ static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int b
 /* Rows [r0,r1) of the panel: cleared, entries of A, children. */
 static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
+    const hdi_values *values = w->f->values;
     const int32_t width = w->f->width;
     hdi_block own = hdi_front_block(w, 0);
     int64_t q, k;
@@ -9335,8 +9396,8 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
         const int64_t i = s->a_row[q], j = s->a_col[q];
         if (i < r0 || i >= r1) continue;
         if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
-        hdi_values_at(w->f->values, width, s->a_from[q], i == j ? s->perm[s->super[w->v] + j] : -1,
-                      hdi_block_at(&own, i, j));
+        hdi_values_at(values, width, s->a_from[q],
+                      values->b_diag && i == j ? s->perm[s->super[w->v] + j] : -1, hdi_block_at(&own, i, j));
     }
     hdi_front_children(w, r0, r1, 0);
 }
@@ -9358,6 +9419,7 @@ static void hdi_front_before(const hdi_front *w, int64_t r0, int64_t r1, int64_t
     const int64_t end = own ? k : to.begin;
     hdi_product g;
     int64_t q;
+    if (end == 0) return;
     memset(&g, 0, sizeof g);
     g.c = hdi_block_at(&to, r0, k);
     g.c_col = to.ld;
@@ -22598,17 +22660,18 @@ static hdi_scope *hdi_geo_keep(hd_geodesic *g, hd_error *e) {
  * are those of as many triangles as the copy counts. The angles at the longest edge are acute, so that
  * nothing is cancelled, and the height is as small as it can be and keeps its relative precision. */
 static void hdi_geo_frames(hd_geodesic *g, const hdi_mesh *mesh) {
+    const double unit = 0.5 / g->h;
     int32_t k;
     for (k = 0; k < g->n_faces; k++) {
         const int32_t f = g->from[k], *v = mesh->tri + hdi_triple(f), n = mesh->copies ? mesh->copies[f] : 1;
-        const double *cot = mesh->cot + hdi_triple(f), weight = n / g->copies;
+        const double *cot = mesh->cot + hdi_triple(f), part = g->copies / n;
         const int apex = cot[0] <= cot[1] ? (cot[0] <= cot[2] ? 0 : 2) : cot[1] <= cot[2] ? 1 : 2;
         const int a = (apex + 1) % 3, b = (apex + 2) % 3;
-        const double twice = 2 * mesh->area[f] / weight, length = sqrt(twice * ((cot[a] + cot[b]) / weight));
+        const double twice = 2 * part * mesh->area[f], length = sqrt(twice * part * (cot[a] + cot[b]));
         hdi_geo_face *out = g->face + k;
-        out->l = length / 2 / g->h;
-        out->q = twice / length / 2 / g->h;
-        out->p = out->q * (cot[a] / weight);
+        out->l = length * unit;
+        out->q = twice / length * unit;
+        out->p = out->q * part * cot[a];
         out->v[0] = g->row[v[a]];
         out->v[1] = g->row[v[b]];
         out->v[2] = g->row[v[apex]];
@@ -22709,17 +22772,18 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
 }
 
 /* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
- * order, replaced by those of the identity. */
+ * order, replaced by those of the identity. gone [n_active]: work. */
 static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int heat, const char *away,
-                           double *val) {
+                           char *gone, double *val) {
+    const hd_csr *L = &lap->L;
     int64_t p;
     int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const int32_t row = g->row[lap->vertex[i]];
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-            const int32_t k = g->row[lap->vertex[lap->L.col[p]]];
-            val[p] = g->copies * lap->L.val[p] + (row == k && heat ? g->mass[row] : 0);
-            if (away && (away[row] || away[k])) val[p] = row == k;
+    for (i = 0; i < L->n_rows; i++) gone[i] = away && away[g->row[lap->vertex[i]]];
+    for (i = 0; i < L->n_rows; i++) {
+        const double own = heat ? g->mass[g->row[lap->vertex[i]]] : 0;
+        for (p = L->row_ptr[i]; p < L->row_ptr[i + 1]; p++) {
+            val[p] = g->copies * L->val[p] + (L->col[p] == i ? own : 0);
+            if (gone[i] | gone[L->col[p]]) val[p] = L->col[p] == i;
         }
     }
 }
@@ -22729,7 +22793,7 @@ static void hdi_geo_matrix(const hd_geodesic *g, const hd_laplacian *lap, int he
 static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_error *e) {
     hdi_scope s = hdi_scope_begin(g->ctx, e);
     double *val = HDI_TAKE(&s, double, lap->L.nnz);
-    char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active);
+    char *pinned = HDI_TAKE_ZERO(&s, char, g->n_active), *gone = HDI_TAKE(&s, char, g->n_active);
     const int mean = g->border == HD_GEODESIC_BORDER_MEAN;
     /* the last factor, and what is kept of those before */
     const uint64_t need = hdi_factor_bytes(&g->sym, 1) +
@@ -22745,7 +22809,7 @@ static hd_status hdi_geo_factors(hd_geodesic *g, const hd_laplacian *lap, hd_err
     for (q = 0; q < HDI_GEO_FACTORS && e->status >= 0; q++) {
         hdi_factor *f = g->factor + q;
         if (q == HDI_GEO_COLD && !mean) continue;
-        hdi_geo_matrix(g, lap, q != HDI_GEO_POISSON, away[q], val);
+        hdi_geo_matrix(g, lap, q != HDI_GEO_POISSON, away[q], gone, val);
         if (hdi_factor_make(f, NULL, &g->sym, 1, g->ctx, e) >= 0 && hdi_factor_run(f, &v, e) >= 0)
             hdi_factor_settle(f);
     }
