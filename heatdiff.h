@@ -1956,8 +1956,7 @@ static int32_t hdi_context_width(const hd_context *ctx) {
  * works. The calling thread claims like the others and waits only for nodes that others have claimed. */
 
 /* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
- * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: assembling 50K vertices,
- * 6 ms with 3 such loops, gained nothing alone and took 1.4 times as long on a busy machine. */
+ * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: that gains nothing. */
 enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64 };
 
 /* Threads read `done` and `stop` without the lock, too. */
@@ -2333,12 +2332,6 @@ static int64_t hdi_prefix_sum(int64_t *count, int64_t n) {
     }
     count[n] = sum;
     return sum;
-}
-
-/* Buckets are filled through their offsets: ptr[b] moves on with every item. This moves them back. */
-static void hdi_rewind(int64_t *ptr, int64_t n) {
-    memmove(ptr + 1, ptr, (size_t)n * sizeof *ptr);
-    ptr[0] = 0;
 }
 
 /* Groups [0,n) by keys: list[ptr[k]..ptr[k + 1]) are the i with key[i] = k, ascending. Those with negative
@@ -3801,8 +3794,7 @@ static hd_status hdi_csr_check(const hd_csr *a, hd_error *e) {
 }
 
 /* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
- * prefetching stops at page borders: with this, L x runs at the speed of memory, 37 GB/s instead of 20 on
- * the machine it was tuned on (7 entries a row, 130 MB). */
+ * prefetching stops at page borders: with this, L x runs at the speed of memory, not at half of it. */
 enum { HDI_AHEAD = 512 };
 
 /* Rows in blocks of about the same number of non-zeros would be fairer, but surface rows are all alike. */
@@ -4689,7 +4681,8 @@ static void hdi_mesh_corners(hdi_mesh *mesh) {
         end = hdi_face_begin(mesh, f + 1);
         for (; mesh->area[f] > 0 && c < end; c++) mesh->corner[at[mesh->tri[c]]++] = (int32_t)c;
     }
-    hdi_rewind(at, mesh->n);
+    memmove(at + 1, at, (size_t)mesh->n * sizeof *at);           /* each has moved on to the next */
+    at[0] = 0;
 }
 
 /* Of a face with smallest corner c the two corners beside that, which tell triangles apart. */
@@ -5484,10 +5477,6 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
  * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
  * order, so that L is symmetric to the last bit, and any thread can fill any row. */
 
-static int hdi_is_cotangent(hd_laplacian_kind kind) {
-    return kind >= HD_LAPLACIAN_FEM && kind <= HD_LAPLACIAN_COT;
-}
-
 /* Is B the identity? */
 static int hdi_is_plain(hd_laplacian_kind kind) {
     return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP;
@@ -5505,7 +5494,7 @@ typedef struct hdi_entry {
 typedef struct hdi_ring {
     int32_t n;
     uint32_t base;
-    uint32_t *seat;             /* [vertices] base plus the number of its entry; below base: it has none */
+    uint32_t *place;            /* [vertices] base plus the number of its entry; below base: it has none */
     hdi_entry *at;              /* [most] zeros from n on */
     hdi_pair *list;             /* [most] work */
 } hdi_ring;
@@ -5744,26 +5733,19 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
 }
 
-/* Takes the seat of w. Returns whether it was free. */
-static HDI_INLINE int hdi_seat_take(uint32_t *seat, uint32_t base, int32_t w) {
-    const int fresh = seat[w] < base;
-    seat[w] = base;
-    return fresh;
-}
-
-/* How many others there are at vertex v, and itself. Faces with an area have three corners at least. */
+/* How many others there are at vertex v, and itself. */
 static int32_t hdi_ring_count(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
-    uint32_t *seat = r->seat, base = ++r->base;
-    int32_t n = hdi_seat_take(seat, base, v);
+    const int64_t end = mesh->at[v + 1];
+    uint32_t *HDI_RESTRICT place = r->place, base = ++r->base;
+    int32_t n = 0;
     int64_t p, k;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
-        const int64_t begin = hdi_face_begin(mesh, f), size = hdi_face_begin(mesh, f + 1) - begin;
-        const int32_t *w = mesh->tri + begin;
-        n += hdi_seat_take(seat, base, w[0]);
-        n += hdi_seat_take(seat, base, w[1]);
-        n += hdi_seat_take(seat, base, w[2]);
-        for (k = 3; k < size; k++) n += hdi_seat_take(seat, base, w[k]);
+    for (p = mesh->at[v]; p < end; p++) {
+        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]), *w = mesh->tri + hdi_face_begin(mesh, f);
+        const int64_t size = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - mesh->ptr[f] : 3;
+        for (k = 0; k < size; k++) {
+            n += place[w[k]] < base;
+            place[w[k]] = base;
+        }
     }
     return n;
 }
@@ -5774,11 +5756,11 @@ static HDI_INLINE void hdi_ring_add(hdi_ring *r, const hdi_mesh *mesh, int32_t f
                                     int after, int beside) {
     const int32_t copies = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, w = mesh->tri[d];
     const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_begin(mesh, f + 1) - begin;
-    const uint32_t last = (uint32_t)r->n, seat = r->seat[w] - r->base, at = seat < last ? seat : last;
+    const uint32_t last = (uint32_t)r->n, place = r->place[w] - r->base, at = place < last ? place : last;
     const double *cot = mesh->cot + begin;
     hdi_entry *e = r->at + at;
     r->n += at == last;
-    r->seat[w] = r->base + at;
+    r->place[w] = r->base + at;
     e->to = w;
     if (!(mesh->area[f] > 0)) return;
     if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, d, k, beside);
@@ -5804,11 +5786,11 @@ static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v,
         mesh.copies = mesh.odd = NULL;
     }
     memset(r.at, 0, (size_t)r.n * sizeof *r.at);
-    if (r.base > UINT32_MAX / 2) memset(r.seat, 0, (size_t)mesh.n * sizeof *r.seat);
+    if (r.base > UINT32_MAX / 2) memset(r.place, 0, (size_t)mesh.n * sizeof *r.place);
     r.base = r.base > UINT32_MAX / 2 ? 1 : r.base + (uint32_t)r.n + 1;
     r.n = 1;
     r.at->to = v;
-    r.seat[v] = r.base;
+    r.place[v] = r.base;
     for (p = mesh.at[v]; p < m->at[v + 1]; p++) {
         const int64_t c = mesh.corner[p];
         const int32_t f = hdi_corner_face(&mesh, c);
@@ -5962,12 +5944,12 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->border = HDI_TAKE(s, char, n);
     all.at = HDI_TAKE_ZERO(s, hdi_entry, x->strands * most);
     all.list = HDI_TAKE(s, hdi_pair, x->strands * most);
-    all.seat = HDI_TAKE_ZERO(s, uint32_t, x->strands * (int64_t)n);
+    all.place = HDI_TAKE_ZERO(s, uint32_t, x->strands * (int64_t)n);
     for (v = 0; v < x->strands && s->e->status >= 0; v++) {
         x->ring[v] = all;
         all.at += most;
         all.list += most;
-        all.seat += n;
+        all.place += n;
     }
     /* the stars of points have different faces, of which only edges are asked for */
     if (s->e->status < 0 || (mesh->copies && mesh->xyz)) return s->e->status;
@@ -6957,10 +6939,7 @@ static hd_status hdi_stars(hdi_mesh *mesh, hdi_cloud *cloud, const double *xyz, 
  *    neighbour's height above that plane less the square of the point's own, as where the plane cuts the
  *    Voronoi diagram of space. Bisectors keep at least a quarter of their distance, as a point may be
  *    farther off than its neighbours are away. (Boissonnat, Ghosh 2014 take the tangent plane and 1 for
- *    2/3. Measured against the smooth kernel, the largest error as a mean of 6 to 10 sets, fem: on
- *    spheres, tori, noise and shells 2/3 from the plane is better than projections alone or within 5 %;
- *    1, or heights from the point, are worse on undersampled tori or in noise. Known loss: voronoi-cot,
- *    500 to 1250 random points on a torus, 12 to 36 % more error.)
+ *    2/3, which is worse on undersampled tori and in noise.)
  * Of several points in one place only the first takes part. Nothing is left of neighbours and stars. */
 static hd_status hdi_star_soup(hdi_surface *z, hd_laplacian *lap, const hdi_input *in, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
@@ -8950,10 +8929,9 @@ static hd_status hdi_symbolic_make(hdi_symbolic *s, const hd_csr *a, const int32
  * Which elimination order: what a caller may ask for, and the choice where it is left open. May call [15]. */
 
 /* From so many rows on nested dissection pays for itself: it takes four to nine times as long to find as
- * minimum degree, and saves half of the flops. For the poles of a set that is soon. One real factor and some
- * solves gain nothing up to 150K rows: see hdi_krylov_few. Wide rows, those of exponential weights, make
- * factors so large that it pays at once where it has fewer flops: of minimum degree's, 1.07, 0.85, 0.68, 0.49
- * with 10, 20, 50, 150 thousand random points and 233 non-zeros a row. */
+ * minimum degree, and saves half of the flops. One real factor and some solves gain nothing up to 150K rows:
+ * see hdi_krylov_elim. Wide rows, those of exponential weights, make factors so large that it pays at once
+ * where it has fewer flops. */
 enum { HDI_DISSECT_FROM = 40000, HDI_DISSECT_WIDE_FROM = 15000, HDI_DISSECT_WIDE = 40 };
 
 /* What order the caller asks for. */
@@ -9382,7 +9360,9 @@ static void hdi_front_children(const hdi_front *w, int64_t r0, int64_t r1, int b
 static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
     const hdi_symbolic *s = w->f->sym;
     const hdi_values *values = w->f->values;
+    const double *from = values->l ? values->l : values->real;
     const int32_t width = w->f->width;
+    const int64_t last = s->a_ptr[s->n_super] - 1;
     hdi_block own = hdi_front_block(w, 0);
     int64_t q, k;
     for (q = 0; q * HDI_PANEL < w->p; q++) {
@@ -9393,7 +9373,9 @@ static void hdi_front_assemble(const hdi_front *w, int64_t r0, int64_t r1) {
             hdi_clear(hdi_block_at(&b, first, b.begin + k), width * (r1 - first));
     }
     for (q = s->a_ptr[w->v]; q < s->a_ptr[w->v + 1]; q++) {
-        const int64_t i = s->a_row[q], j = s->a_col[q];
+        const int64_t i = s->a_row[q], j = s->a_col[q], next = s->a_from[hdi_least(q + 16, last)];
+        if (from) HDI_PREFETCH(from + next);
+        if (values->b) HDI_PREFETCH(values->b + next);
         if (i < r0 || i >= r1) continue;
         if (j < own.begin || j >= own.begin + HDI_PANEL) own = hdi_front_block(w, j / HDI_PANEL);
         hdi_values_at(values, width, s->a_from[q],
@@ -10560,9 +10542,7 @@ static void hdi_inverse_put(const hdi_inverse *z, const double *from, int64_t at
  * has been inverted. Plain transposes. Half of a mesh's columns have nothing below, and r is x_j. The others
  * go through the fronts on their ways to J in blocks; a front sees those that have come to it. Sweeps and
  * forms are three times the multiply-adds of the factorisation, of which whole solves would take 13 to 33
- * times. The other exact way, a selected inverse on the pattern of B^2, takes three times the time and
- * memory: at 150,000 vertices 2.9 and 10.3 s of processor time, 0.99 and 3.2 GB. A million take 48 s and
- * 6.7 GB here. */
+ * times; a selected inverse on the pattern of B^2 takes three times the time and memory of all. */
 
 enum { HDI_FORM_COLS = 24, HDI_FORM_COLS_REAL = 8, HDI_FORM_SLOTS = 8, HDI_FORM_NEAR = 32 };
 enum { HDI_FORM_SMALL = 65536 };     /* doubles of room that are never too many */
@@ -11998,10 +11978,6 @@ static const double hdi_shared_table[] = {
     10, 8, 4.49e-07,
       0.3893, 0.1471, 0.2952, 0.4531, 0.1036, 0.7995, -0.1913, 1.24, -0.6443, 1.903, -1.481, 2.937,
       -3.107, 4.411, -6.261, 6.326,
-    3.2, 12, 2.16e-12,
-      1.92787, 0.413936, 1.76524, 1.25239, 1.42647, 2.12386, 0.872062, 3.0355, 0.095209, 3.94546,
-      2.65349, 4.05802, -0.855928, 4.89644, -2.03718, 5.99336, -3.58576, 7.30692, -5.70793, 8.88481,
-      -8.73678, 10.7614, -13.3826, 13.0291,
     5.6, 12, 9.28e-12,
       1.1156037, 0.24493527, 1.0163358, 0.74003344, 0.8151109, 1.2516314, 0.50639945, 1.7937028,
       0.081317866, 2.3853194, -0.47490611, 3.0549922, -1.1922158, 3.8489528, -2.1427885, 4.8321641,
@@ -12043,13 +12019,6 @@ static const double hdi_shared_table[] = {
       0.003347, 0.001104, 0.002855, 0.003427, 0.001939, 0.006129, 0.001635, 0.009369, 0.001643, 0.01554,
       0.002195, 0.03052, 0.004238, 0.05337, 0.001808, 0.1033, -0.009742, 0.1876, -0.02392, 0.3338,
       -0.1004, 0.6013, -0.263, 1.038, -0.6352, 1.744, -1.432, 2.802, -3.02, 4.274, -6.125, 6.187,
-    32, 20, 1.25e-12,
-      0.175988695, 0.0248101908, 0.15979093, 0.0950906275, 0.174083538, 0.142491372, 0.168085797, 0.247922589,
-      0.133969023, 0.362666489, 0.0808351229, 0.489576034, 0.0114669125, 0.634254501,
-      -0.0689606099, 0.804479557, -0.158675703, 1.0256016, -0.277253187, 1.32205812, -0.446373301, 1.71153722,
-      -0.692393087, 2.21457838, -1.05069359, 2.85348622, -1.56956017, 3.65228987, -2.31479901, 4.63622504,
-      -3.3741504, 5.82929786, -4.87848903, 7.25534197, -7.01563886, 8.92370443, -10.0830808, 10.8557306,
-      -14.7669319, 13.1580288,
     100, 20, 2.18e-11,
       0.087348, 0.017967, 0.08152, 0.054513, 0.069881, 0.093002, 0.052614, 0.1351, 0.030323, 0.18291,
       0.0055056, 0.23965, -0.017957, 0.3136, -0.041792, 0.41983, -0.076387, 0.57534, -0.1362, 0.79663,
@@ -12857,13 +12826,6 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-static void hdi_parts_most(hdi_parts *a, hdi_parts b) {
-    a->rational = hdi_max(a->rational, b.rational);
-    a->solver = hdi_max(a->solver, b.solver);
-    a->rounding = hdi_max(a->rounding, b.rounding);
-    a->local = hdi_max(a->local, b.local);
-}
-
 /* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
@@ -12886,25 +12848,22 @@ static HDI_NOINLINE double hdi_quotient(double a, double b) { return a == 0 ? 0 
 /* A bound. Of one that is not a number nothing is known. */
 static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
 
-/* Adds the values that another ledger has noted. */
-static void hdi_ledger_join(hdi_ledger *l, const hdi_ledger *other) {
-    hdi_parts_most(&l->off, other->off);
-    l->largest = hdi_max(l->largest, other->largest);
-    l->smallest = hdi_min(l->smallest, other->smallest);
-    l->relative = hdi_max(l->relative, other->relative);
-    l->n_values += other->n_values;
-    l->lost |= other->lost;
-}
-
 /* Notes a value and the bound on its error. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
-    hdi_ledger one = {hdi_parts_scale(1, off), {0, 0, 0, 0}, size, size > 0 ? size : HUGE_VAL, -1, 1,
-                      !hdi_finite(value)};
-    const double all = hdi_parts_sum(&one.off);
+    double all;
+    off = hdi_parts_scale(1, off);               /* what is not a number is infinite */
+    all = hdi_parts_sum(&off);
+    l->off.rational = hdi_max(l->off.rational, off.rational);
+    l->off.solver = hdi_max(l->off.solver, off.solver);
+    l->off.rounding = hdi_max(l->off.rounding, off.rounding);
+    l->off.local = hdi_max(l->off.local, off.local);
+    l->largest = hdi_max(l->largest, size);
+    if (size > 0) l->smallest = hdi_min(l->smallest, size);
     /* to the exact value, which is at least |value| - all */
-    if (l->relative >= 0) one.relative = all == 0 ? 0 : hdi_quotient(all, size - all);
-    hdi_ledger_join(l, &one);
+    if (l->relative >= 0 && all != 0) l->relative = hdi_max(l->relative, hdi_quotient(all, size - all));
+    l->n_values++;
+    l->lost |= !hdi_finite(value);
 }
 
 static void hdi_evidence_worst(hd_evidence *to, double evidence) {
@@ -14191,8 +14150,8 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
 /* The basis is not kept. A first sweep finds the coefficients. A second one makes the same vectors again, to
  * the last bit, and adds them up. This is as much work as to write hundreds of vectors to memory and read
  * them back, and needs room for six.
- * There is no reorthogonalisation. Slivers have a few huge eigenvalues that come back as copies. This costs a
- * third more steps and no accuracy; Simon's partial one takes 2.4 times as long. */
+ * There is no reorthogonalisation. Slivers have a few huge eigenvalues that come back as copies: a third more
+ * steps, and no accuracy lost. */
 
 static hd_status hdi_lanczos_failed(hd_error *e) {
     return hdi_fail(e, HD_ERR_BREAKDOWN, "Lanczos: the projected eigenproblem did not converge");
@@ -15718,11 +15677,6 @@ static void hdi_spec_add(const hdi_spec *s, double *const *v, int32_t n_v, doubl
 
 /* ---- operators on blocks ---- */
 
-/* bw = B w */
-static void hdi_spec_mass(const hdi_spec *s, const double *w) {
-    hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
-}
-
 /* w -= V V'(B w) and bw = B w, also there before, for any blocks v. removed [8] or NULL: |taken out|^2. */
 static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, double *w, double *removed) {
     int32_t i, n, j;
@@ -15733,7 +15687,7 @@ static void hdi_spec_project(const hdi_spec *s, double *const *v, int32_t n_v, d
         hdi_spec_add(s, v + i, n, &w, 1, s->h);
         for (j = 0; removed && j < 64 * n; j++) removed[j % 8] += s->h[j] * s->h[j];
     }
-    if (n_v > 0) hdi_spec_mass(s, w);
+    if (n_v > 0) hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
 }
 
 /* w = (L - sigma B)^-1 b */
@@ -15851,7 +15805,7 @@ static int32_t hdi_spec_append(hdi_spec *s) {
     double norm[HDI_WIDE], removed[HDI_WIDE], off = HUGE_VAL;
     int32_t left = 0, pass, q;
     memset(couple, 0, 64 * sizeof *couple);
-    hdi_spec_mass(s, w);
+    hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
     hdi_wide_dots(w, s->bw, NULL, s->n, HDI_WIDE, norm);
     for (q = 0; q < HDI_WIDE; q++) {
         couple[9 * q] = 1;
@@ -16033,7 +15987,7 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
     worst = hdi_spec_measure(s, value, x, r, norm);
     for (tries = 0; tries < 2 && worst > HDI_SPEC_POLISH * s->tol; tries++) {
         hdi_spec_inverse(s, r, w);
-        hdi_spec_mass(s, w);
+        hdi_mass_apply(s->lap, HDI_WIDE, w, s->bw, s->m->ctx);
         hdi_spec_project(s, s->list, s->n_near, w, NULL);
         hdi_spec_project(s, s->lock + first, s->n_lock - first, w, NULL);
         hdi_axpy(1, w, x, size);
@@ -16055,7 +16009,7 @@ static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_
     double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
     int64_t i;
     int32_t r;
-    hdi_spec_mass(s, x);
+    hdi_mass_apply(s->lap, HDI_WIDE, x, s->bw, s->m->ctx);
     hdi_spec_project(s, s->lock, at, x, twin);
     for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > HDI_SPEC_TWIN ? 0 : x[i];
     s->alike |= !(hdi_spec_orthonormal(s, x, zero, zero, zero, NULL) < 0.5);
@@ -19222,8 +19176,7 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
 /* B times the vectors. */
 static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
-    const int64_t size = (int64_t)x->s.n * x->s.count;
-    int64_t at;
+    int64_t at, size = (int64_t)x->s.n * x->s.count;
     if (x->bx || !heat->source->B) return HD_OK;
     x->bx = HDI_NEW(heat->ctx, double, size, e);
     for (at = 0; at < size && x->bx; at += x->s.n)
@@ -20081,11 +20034,6 @@ typedef struct hdi_inverses {
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
 
-/* Which time or filter of the call function q is. */
-static int32_t hdi_inverses_column(const hdi_heat_call *h, const hdi_inverses *x, int32_t q) {
-    return x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
-}
-
 /* Is row i of the copy of the pair one of those asked for? */
 static int hdi_row_counts(const hdi_heat_call *h, int32_t i) {
     return h->core == 0 || h->heat->elim.lap->vertex[i] < h->core;
@@ -20535,23 +20483,16 @@ static void hdi_trace_tell(const hdi_diagonals *to, hdi_ledger ledger, int32_t q
     hdi_ledger_close(&ledger, rep);
 }
 
-/* The number of components that keep their heat. */
-static double hdi_components_kept(const hd_laplacian *lap) {
-    double count = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_components && lap->conserves; i++) count += hdi_finite(lap->component_mass[i]);
-    return count;
-}
-
 /* The trace of function q, from the diagonal of K, which is there. x NULL: only the means are left, of which
  * each component has one. work [n] */
 static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int32_t q, const hdi_diagonal *d,
                              double rounding, double *work, hdi_parts *off) {
     const hd_laplacian *lap = h->heat->elim.lap;
-    const double components = hdi_components_kept(lap);
-    double value = 0, size = 0, form = 0;
+    double components = 0, value = 0, size = 0, form = 0;    /* components that keep their heat */
     int32_t i;
     memset(off, 0, sizeof *off);
+    for (i = 0; i < lap->n_components && lap->conserves; i++)
+        components += hdi_finite(lap->component_mass[i]);
     if (!x && h->core == 0) return components;
     if (x && lap->B) hdi_operator_diagonal(&h->heat->elim, 0, hdi_inverses_get(x, q, 1), work);
     for (i = 0; i < lap->n_active; i++) {
@@ -20582,7 +20523,8 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
     int32_t q;
     if (h->e->status < 0 || (x && hdi_probe_run(h, x, 1, &d, &probe, &s) < 0)) return hdi_scope_end(&s);
     for (q = 0; q < (x ? x->count : 1); q++) {
-        const int32_t at = hdi_inverses_column(h, x, q);
+        /* which time or filter of the call it is */
+        const int32_t at = x && x->t ? h->time_column[x->t - h->times + q] : h->now + q;
         hd_report *rep = one ? one + at : h->rep;
         hdi_ledger ledger;
         double seen = n * DBL_EPSILON;
@@ -23031,10 +22973,6 @@ static HDI_AVX2 void hdi_geo_flow_avx2(const hd_geodesic *g, const double *u, co
     hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
 }
 
-static HDI_AVX512 void hdi_geo_flow_avx512(const hd_geodesic *g, const double *u, const double *least,
-                                           double *b, double *dim) {
-    hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
-}
 #endif
 
 /* The same of polygon f in one column of k. */
@@ -23068,7 +23006,6 @@ static void hdi_geo_poly_flow(const hdi_geo_polygons *z, int32_t f, int k, const
  * columns as bits in which some faces have heat, but all of it below least. */
 static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, const double *least,
                               const char *done, const hdi_geo_source *s, double *b) {
-    const int level = k > 1 ? hdi_simd_level(g->ctx) : 0;
     double dim[HDI_GEO_WIDE] = {0};
     int32_t q;
     int c, faint = 0;
@@ -23077,11 +23014,9 @@ static int hdi_geo_divergence(const hd_geodesic *g, int k, const double *u, cons
     if (g->poly.ptr) {}
     else if (k == 1) hdi_geo_flow(g, 1, u, least, done, s, b, dim);
 #if HDI_X86
-    else if (level >= 2) hdi_geo_flow_avx512(g, u, least, b, dim);
-    else if (level == 1) hdi_geo_flow_avx2(g, u, least, b, dim);
+    else if (hdi_simd_level(g->ctx) > 0) hdi_geo_flow_avx2(g, u, least, b, dim);
 #endif
     else hdi_geo_flow(g, HDI_GEO_WIDE, u, least, NULL, NULL, b, dim);
-    (void)level;
     for (c = 0; c < k; c++) faint |= (dim[c] > 0) << c;
     return faint;
 }
@@ -23642,7 +23577,7 @@ static hd_laplacian_kind hdi_lap_kind(const hd_mesh *m, const hd_laplacian_opts 
 static void hdi_lap_opts_check(const hd_mesh *m, const hd_laplacian_opts *o, hd_laplacian_kind kind,
                                hd_error *e) {
     const int flips = o->triangulation != HD_TRIANGULATION_GIVEN, points = m->shape == HD_POINTS;
-    const int cotangents = hdi_is_cotangent(kind);
+    const int cotangents = kind >= HD_LAPLACIAN_FEM && kind <= HD_LAPLACIAN_COT;
     hdi_refuse(m->shape == HD_TRIANGLES && !cotangents,
                "laplacian of triangles: the kind is fem, voronoi-cot or cot", e);
     hdi_refuse(m->shape == HD_POLYGONS && !cotangents && kind != HD_LAPLACIAN_POLYGON,
