@@ -542,9 +542,9 @@ typedef enum hd_evidence {
 
 /* What happened, and how large the error can be: the worst of all fields, columns and times. error_bound
  * bounds the error of any value returned, relative to the largest |value| of its column, or of the whole list
- * for entries and pairs; above 1e-2 the status is HD_WARN_ACCURACY. It sums four parts: the rational
- * approximation, iterations or a Krylov basis that end, rounding, and what method local leaves out. How each
- * is made stands at the top of room [22]. */
+ * for entries and pairs; above 1e-2 the status is HD_WARN_ACCURACY. It is the sum of four parts: the rational
+ * approximation; the solver, which stops iterating or extending its Krylov basis; rounding; and what method
+ * local leaves out. Room [22] begins with how each part is found. */
 typedef struct hd_report {
     hd_status status;
     hd_error error;             /* as err, if status < 0 */
@@ -1956,7 +1956,7 @@ static int32_t hdi_context_width(const hd_context *ctx) {
  * works. The calling thread claims like the others and waits only for nodes that others have claimed. */
 
 /* Threads at most. How often a thread looks around before it sleeps: 20 to 50 microseconds in all. Walks of
- * fewer nodes than HDI_TASKS_START share them with threads that run, but start none: that gains nothing. */
+ * fewer nodes than HDI_TASKS_START share them with threads that run; to start some would gain nothing. */
 enum { HDI_THREADS_MOST = 256, HDI_SPIN = 1000, HDI_TASKS_START = 9, HDI_TELLS = 64 };
 
 /* Threads read `done` and `stop` without the lock, too. */
@@ -5493,7 +5493,7 @@ typedef struct hdi_entry {
 /* A vertex and the others that it shares something with. */
 typedef struct hdi_ring {
     int32_t n;
-    uint32_t base;
+    uint32_t base;              /* grows from vertex to vertex, so that places need not be cleared */
     uint32_t *place;            /* [vertices] base plus the number of its entry; below base: it has none */
     hdi_entry *at;              /* [most] zeros from n on */
     hdi_pair *list;             /* [most] work */
@@ -12921,7 +12921,7 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
     return 0;
 }
 
-/* sum_j (l |L_ij| + b |B_ij|) |x_j| of row i. x NULL: ones. */
+/* sum_j (l |L_ij| + b |B_ij|) |x_j| of row i, with factors of |x_j| up to 1e140. x NULL: ones. */
 static double hdi_row_size(const hd_laplacian *lap, int32_t i, double l, double b, const double *x) {
     double sum = lap->B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
     int64_t p;
