@@ -46,7 +46,7 @@
      [D] functions    by task                              [16] order       choice of an elimination order
      Implementation: a room calls only rooms above it      [17] direct      multifrontal L D L', solves
      [00] platform    compilers, the C library, threads    [18] selinv      selected inversion
-     [01] scalar      checked sizes, complex numbers       [19] precond     Jacobi, SSOR, incomplete L D L'
+     [01] scalar      checked sizes, complex numbers       [19] precond     preconditioners of iterations
      [02] error       filling hd_error                     [20] iterative   COCG, CS-MINRES
      [03] memory      counted blocks, scopes               [21] rational    pole sets: tables, fits, values
      [04] context     progress, parallel loops             [22] poles       the family t L + theta_i B
@@ -10964,12 +10964,8 @@ static hd_status hdi_ldl_enter_inverse(hdi_call *c, const hd_ldl *f, int packs, 
 }
 
 /* ==== [19] precond ====
- * Preconditioners M = (I + U') D (I + U), U strictly upper triangular on the pattern of L, D diagonal,
- * complex-symmetric or real, and the order of rows that suits them. May call [12].
- *   jacobi  D = diag(A), U = 0
- *   ssor    D = diag(A), U = D^-1 upper(A): with omega = 1 the product form of SSOR
- *   ildl    incomplete LDL' without fill
- *   mildl   adds most of the dropped fill to the diagonal, which keeps what smooth vectors see of A
+ * Preconditioners M of A = t L + theta B, complex-symmetric or real, and the order of rows that suits them.
+ * May call [12].
  * This work is based on
  *   I. Gustafsson, A class of first order factorization methods, 1978 (mildl)
  *   E. Cuthill, J. McKee, Reducing the bandwidth of sparse symmetric matrices, 1969
@@ -11062,6 +11058,12 @@ typedef struct hdi_system {
     hd_c64 theta;
 } hdi_system;
 
+/* The entry of A in row i at place p of L. */
+static hd_c64 hdi_system_entry(const hdi_system *a, int32_t i, int64_t p) {
+    const double b = a->lap->L.col[p] == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
+    return hdi_c(a->t * a->lap->L.val[p] + a->theta.re * b, a->theta.im * b);
+}
+
 /* y = A x on rows; returns x'y. */
 static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x, hd_c64 *HDI_RESTRICT y) {
     const int64_t *HDI_RESTRICT Ap = a->lap->L.row_ptr;
@@ -11095,24 +11097,26 @@ static hd_c64 hdi_system_apply(const hdi_system *a, const hd_c64 *HDI_RESTRICT x
 
 typedef struct hdi_precond_row hdi_precond_row;
 
-/* A preconditioner of the system a: U and D^-1; while it is made, the values of A. */
+/* A preconditioner of the system a, which is there when it is made and applied: as a rule M = (I + U') D (I +
+ * U), U strictly upper triangular on the pattern of L. d and u are all that is kept of what make does. */
 typedef struct hdi_precond {
     const hdi_precond_row *row;
     const hdi_upper *up;
     hdi_system a;
-    hd_c64 *u;       /* [nnz of up] or NULL */
-    hd_c64 *d;       /* [n] */
+    hd_c64 *u;       /* [nnz of up] U; before make what is above the diagonal of A. Or NULL */
+    hd_c64 *d;       /* [n] D^-1; before make the diagonal of A, and D after it */
 } hdi_precond;
 
 /* All there is to know of a kind: a new one is a row of the table below, and its functions. */
 struct hdi_precond_row {
-    int32_t entries;         /* values of U for each entry above the diagonal */
-    int32_t vectors;         /* [n] each: work of apply */
-    double steps;            /* of cocg, about, relative to those with mildl */
-    void (*make)(const hdi_precond *m, hd_c64 *work);   /* A to D and U; NULL: U is 0. work [n] */
-    double keep;             /* share of the dropped fill that goes to the diagonal */
+    double steps;            /* of iterations, about, relative to those with mildl */
+    void (*make)(const hdi_precond *m, hd_c64 *work);   /* D and U; NULL: U is 0. work [n] */
     /* z = M^-1 r, z not r */
     void (*apply)(const hdi_precond *m, const hd_c64 *r, hd_c64 *z, hd_c64 *work);
+    int32_t entries;         /* values of U for each entry above the diagonal */
+    double keep;             /* share of the dropped fill that goes to the diagonal */
+    int32_t vectors;         /* [n] each: work of apply */
+    int32_t products;        /* with A, of apply */
 };
 
 #define HDI_ILDL_LEAST 1e-3   /* share of its diagonal entry that a pivot must keep */
@@ -11137,7 +11141,8 @@ static int64_t hdi_ildl_seek(const int32_t *col, int64_t p, int64_t end, int32_t
 
 /* Right-looking incomplete LDL' of the complex-symmetric A, plain transpose. Row k updates the entries (i, j)
  * between its own columns; where the pattern has none, `keep` of the update goes to the diagonal entries of i
- * and j. A vertex with very many neighbours costs no square of their number. diag [n] is work. */
+ * and j, since smooth vectors hardly see that. A vertex with very many neighbours costs no square of their
+ * number. diag [n] is work. */
 static void hdi_ildl(const hdi_precond *m, hd_c64 *diag) {
     const double keep = m->row->keep;
     const int32_t *col = m->up->col;
@@ -11179,6 +11184,7 @@ static void hdi_ildl(const hdi_precond *m, hd_c64 *diag) {
 
 /* ---- the kinds ---- */
 
+/* U = D^-1 upper(A): with omega = 1 the product form of SSOR. */
 static void hdi_ssor(const hdi_precond *m, hd_c64 *work) {
     int32_t i;
     int64_t p = 0;
@@ -11226,13 +11232,13 @@ static void hdi_upper_apply(const hdi_precond *m, const hd_c64 *HDI_RESTRICT r, 
     }
 }
 
-static const hdi_precond_row hdi_preconds[] = {   /* by hd_precond: entries, vectors, steps, ... */
-    {1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply},   /* auto */
-    {0, 0, 5.5, NULL, 0, hdi_none_apply},
-    {0, 0, 5, NULL, 0, hdi_jacobi_apply},
-    {1, 0, 2, hdi_ssor, 0, hdi_upper_apply},
-    {1, 0, 1.4, hdi_ildl, 0, hdi_upper_apply},
-    {1, 0, 1, hdi_ildl, HDI_MILDL_KEPT, hdi_upper_apply}
+static const hdi_precond_row hdi_preconds[] = {  /* by hd_precond */
+    {1, hdi_ildl, hdi_upper_apply, 1, HDI_MILDL_KEPT, 0, 0},     /* auto */
+    {5.5, NULL, hdi_none_apply, 0, 0, 0, 0},
+    {5, NULL, hdi_jacobi_apply, 0, 0, 0, 0},
+    {2, hdi_ssor, hdi_upper_apply, 1, 0, 0, 0},
+    {1.4, hdi_ildl, hdi_upper_apply, 1, 0, 0, 0},
+    {1, hdi_ildl, hdi_upper_apply, 1, HDI_MILDL_KEPT, 0, 0}
 };
 
 static int hdi_precond_known(hd_precond kind) {
@@ -11246,21 +11252,18 @@ static uint64_t hdi_precond_size(const hdi_precond_row *row, int64_t n, int64_t 
 
 /* Fills m, whose arrays are there. work [n] */
 static void hdi_precond_make(const hdi_precond *m, hd_c64 *work) {
-    const hdi_precond_row *row = m->row;
-    const hdi_system *a = &m->a;
-    const hd_csr *L = &a->lap->L;
+    const hd_csr *L = &m->a.lap->L;
     int32_t i;
     int64_t p = 0, q = 0;
     for (i = 0; i < L->n_rows; i++) {
         for (; p < L->row_ptr[i + 1]; p++) {     /* the diagonal of A, and what is above it */
             const int32_t j = L->col[p];
-            const double b = j == i ? a->lap->b_diag[i] : a->lap->B ? a->lap->B[p] : 0;
-            const hd_c64 v = hdi_c(a->t * L->val[p] + a->theta.re * b, a->theta.im * b);
+            const hd_c64 v = hdi_system_entry(&m->a, i, p);
             if (j == i) m->d[i] = v;
             else if (m->u && j > i) m->u[q++] = v;
         }
     }
-    if (row->make) row->make(m, work);
+    if (m->row->make) m->row->make(m, work);
     for (i = 0; i < L->n_rows; i++) m->d[i] = hdi_cdiv(hdi_c(1, 0), m->d[i]);
 }
 
@@ -12790,9 +12793,7 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
  * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger says how each
  * is known; and a lane has them in the norm of B from its engine. With poles these are hdi_lane_residual and
- * hdi_rational_bound. In hdi_krylov_answer they are those of the window before and, by hdi_ritz_most, what
- * the basis leaves out (solver) and what errors of its steps become (hdi_krylov_rounding; hdi_krylov_probe
- * measures some of these), on a part of the mesh also hdi_rim_bound (local). Of Lanczos see hdi_lanczos_run.
+ * hdi_rational_bound; with krylov all is said at hdi_krylov_judge, with Lanczos at hdi_lanczos_run.
  * hdi_conserve_off adds what means are off by; rhs_off and f_off of hdi_heat_load are what the right-hand
  * side is. A residual counts as in hdi_residual_seen, with the rounding of hdi_noise_weights, in the norm of
  * D^-1; hdi_ratio_root leads from there to that of B^-1. */
@@ -14456,7 +14457,7 @@ typedef struct hdi_krylov {
     const double *means[HDI_WIDE];   /* [n_components] the constants of each */
     double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];  /* beta[0] is 0 */
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
-    double solved;               /* largest residual found of a solve over that */
+    double seen;                 /* largest residual of a solve that was found, relative to its noise */
     double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
     int32_t done[HDI_WIDE];      /* steps that were enough, 0: not yet, -1: there are only constants */
     hdi_ritz ritz[HDI_WIDE];     /* of those that are done, with all rows */
@@ -14512,7 +14513,7 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     z->w = z->c + count;
     z->probe = z->w + count;
     z->work = z->probe + 2 * n;
-    z->solved = 0;
+    z->seen = 0;
     z->steps = 0;
     memset(z->v[0], 0, (size_t)count * sizeof *z->c);
     memset(z->c, 0, (size_t)count * sizeof *z->c);
@@ -14550,7 +14551,7 @@ static void hdi_krylov_probe(hdi_krylov *z) {
             const double d = z->c[(int64_t)z->wide * i + r] - rest[i];
             sum += z->m->weight[i] * (d * d);
         }
-        z->solved = hdi_max(z->solved, sqrt(sum) / z->noise[z->steps][r]);
+        z->seen = hdi_max(z->seen, sqrt(sum) / z->noise[z->steps][r]);
     }
 }
 
@@ -14634,7 +14635,7 @@ static hd_status hdi_krylov_ritz(const hdi_krylov *z, int32_t r, int32_t rows, d
     if (!hdi_lanczos_eigen(&z->alpha[0][r], &z->beta[0][r], HDI_WIDE, s->m, rows, s->mu, off, s->v))
         return hdi_lanczos_failed(e);
     for (i = 0; i < s->m; i++)                   /* 1/(1 + g lambda); of a constant rounding is left */
-        if (s->mu[i] > 1.001 + 10 * (1 + z->solved) * z->noise[0][r] &&
+        if (s->mu[i] > 1.001 + 10 * (1 + z->seen) * z->noise[0][r] &&
             z->f_norm[r] * z->f_norm[r] > 1e-16 * z->fixed[r])
             return hdi_not_semidefinite(e);
     return HD_OK;
@@ -14713,72 +14714,7 @@ static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
     }
 }
 
-/* ---- what answers are off by ---- */
-
-/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
- * the right angle. What lies between them is below the maximum on them times this number, tuned on meshes.
- * The sine is its Taylor series up to x^9: that of the C library brings 6 KB for large arguments. */
-#define HDI_KRYLOV_BETWEEN 1.2
-
-static double hdi_krylov_point(int32_t k) {
-    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
-    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
-    const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
-    return low == k ? s * s : 1 - s * s;
-}
-
-/* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
- * tau/(ab) times minus the quotient in x, low and low + d, by expm1. */
-static double hdi_krylov_difference(double a, double fa, double b, double fb, double tau, int rate) {
-    double low, d, q;
-    if (fabs(a - b) > 0.1 * a) return (fa - fb) / (a - b);
-    if (!(a > HDI_KRYLOV_TINY && b > HDI_KRYLOV_TINY)) return 0;
-    low = tau * hdi_max(0, 1 / hdi_max(a, b) - 1);
-    d = tau / (a * b) * fabs(a - b);
-    q = d > 1e-8 ? -expm1(-d) / d : 1 - d / 2;
-    return tau / (a * b) * (rate ? exp(-low - d) - low * exp(-low) * q : q * hdi_max(fa, fb));
-}
-
-/* With S V = V T + beta v_(m+1) e_m' + errors Phi_j of the steps, the answer is off by
- *   beta (sum_k x_k V_mk F[mu_k, S]) v_(m+1) + sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j
- * relative to |f|_B, with mu_k the eigenvalues of T, x the first row of its eigenvectors V, and F[.,.] the
- * divided difference. S has its eigenvalues in (0, 1], where the sums are smooth functions of them. Their
- * maxima on enough points, times HDI_KRYLOV_BETWEEN, are taken for bounds, which are estimated therefore:
- * most [rows], for each row of V that is there. tau = t/g. */
-static void hdi_ritz_most(const hdi_ritz *s, double tau, double *most) {
-    double f[HDI_KRYLOV_MAX], sum[HDI_KRYLOV_MAX];
-    int32_t i, j, k;
-    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_value(s->mu[i], tau, s->rate);
-    for (j = 0; j < s->rows; j++) most[j] = 0;
-    for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
-        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, s->rate);
-        memset(sum, 0, (size_t)s->rows * sizeof *sum);
-        for (i = 0; i < s->m; i++) {
-            const double *v = s->v + (int64_t)i * s->rows;
-            hdi_axpy(v[0] * hdi_krylov_difference(s->mu[i], f[i], at, fa, tau, s->rate), v, sum, s->rows);
-        }
-        for (j = 0; j < s->rows; j++) most[j] = hdi_max(most[j], HDI_KRYLOV_BETWEEN * fabs(sum[j]));
-    }
-}
-
-/* What rounding does to the answer of right-hand side r. The residual of a solve is an error that is no
- * larger in the B norm. most: see above. y: the answer's coefficients. given: the error of the right-hand
- * side, which is an error of the first step. */
-static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *most, const double *y,
-                                  double given) {
-    const double root = hdi_ratio_root(z->m->lap);
-    const int32_t m = z->done[r];
-    double sum = 0, size = 0;
-    int32_t j;
-    for (j = 0; j < m; j++) {
-        const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
-        const double solve = hdi_residual_seen(z->solved * z->noise[j][r], z->noise[j][r]);
-        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] + z->beta[j + 1][r];
-        sum += most[j] * (root * (solve + product) + 4 * DBL_EPSILON * size_j);
-        size += fabs(y[j]);
-    }
-    return z->f_norm[r] * sum + most[0] * given + m * DBL_EPSILON * size;
-}
+/* ---- what is lost at a rim ---- */
 
 /* The norm of w u + dw u' on the rim, in that of B^-1, at time s after z->from; with rate that of its
  * derivative. w, dw: matrices times the basis there, by steps; dw may be NULL. */
@@ -14835,19 +14771,94 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
     return off / sqrt(z->m->scale) * hdi_ratio_root(z->m->lap) * g->uneven;
 }
 
-/* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. */
-static void hdi_krylov_answer(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
+/* ---- what answers are off by ---- */
+
+/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
+ * the right angle. What lies between them is below the maximum on them times this number, tuned on meshes.
+ * The sine is its Taylor series up to x^9: that of the C library brings 6 KB for large arguments. */
+#define HDI_KRYLOV_BETWEEN 1.2
+
+static double hdi_krylov_point(int32_t k) {
+    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
+    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
+    const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
+    return low == k ? s * s : 1 - s * s;
+}
+
+/* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
+ * tau/(ab) times minus the quotient in x, low and low + d, by expm1. */
+static double hdi_krylov_difference(double a, double fa, double b, double fb, double tau, int rate) {
+    double low, d, q;
+    if (fabs(a - b) > 0.1 * a) return (fa - fb) / (a - b);
+    if (!(a > HDI_KRYLOV_TINY && b > HDI_KRYLOV_TINY)) return 0;
+    low = tau * hdi_max(0, 1 / hdi_max(a, b) - 1);
+    d = tau / (a * b) * fabs(a - b);
+    q = d > 1e-8 ? -expm1(-d) / d : 1 - d / 2;
+    return tau / (a * b) * (rate ? exp(-low - d) - low * exp(-low) * q : q * hdi_max(fa, fb));
+}
+
+/* With S V = V T + beta v_(m+1) e_m' + errors Phi_j of the steps, the answer is off by
+ *   beta (sum_k x_k V_mk F[mu_k, S]) v_(m+1) + sum_j (sum_k x_k V_jk F[mu_k, S]) Phi_j
+ * relative to |f|_B, with mu_k the eigenvalues of T, x the first row of its eigenvectors V, and F[.,.] the
+ * divided difference. S has its eigenvalues in (0, 1], where the sums are smooth functions of them. Their
+ * maxima on enough points, times HDI_KRYLOV_BETWEEN, are taken for bounds, which are estimated therefore:
+ * gain [rows], for each row of V that is there. tau = t/g. */
+static void hdi_ritz_gain(const hdi_ritz *s, double tau, double *gain) {
+    double f[HDI_KRYLOV_MAX], sum[HDI_KRYLOV_MAX];
+    int32_t i, j, k;
+    for (i = 0; i < s->m; i++) f[i] = hdi_krylov_value(s->mu[i], tau, s->rate);
+    for (j = 0; j < s->rows; j++) gain[j] = 0;
+    for (k = 1; k <= HDI_KRYLOV_POINTS; k++) {
+        const double at = hdi_krylov_point(k), fa = hdi_krylov_value(at, tau, s->rate);
+        memset(sum, 0, (size_t)s->rows * sizeof *sum);
+        for (i = 0; i < s->m; i++) {
+            const double *v = s->v + (int64_t)i * s->rows;
+            hdi_axpy(v[0] * hdi_krylov_difference(s->mu[i], f[i], at, fa, tau, s->rate), v, sum, s->rows);
+        }
+        for (j = 0; j < s->rows; j++) gain[j] = hdi_max(gain[j], HDI_KRYLOV_BETWEEN * fabs(sum[j]));
+    }
+}
+
+/* What rounding does to the answer of right-hand side r. The residual of a solve is an error that is no
+ * larger in the B norm. gain: see above. y: the answer's coefficients. rhs_off: the error of the right-hand
+ * side, which is an error of the first step. */
+static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *gain, const double *y,
+                                  double rhs_off) {
+    const double root = hdi_ratio_root(z->m->lap);
+    const int32_t m = z->done[r];
+    double sum = 0, size = 0;
+    int32_t j;
+    for (j = 0; j < m; j++) {
+        const double product = z->m->lap->B ? z->noise[j][r] : 0;   /* of B w, the next right-hand side */
+        const double solve = hdi_residual_seen(z->seen * z->noise[j][r], z->noise[j][r]);
+        const double size_j = fabs(z->alpha[j][r]) + z->beta[j][r] + z->beta[j + 1][r];
+        sum += gain[j] * (root * (solve + product) + 4 * DBL_EPSILON * size_j);
+        size += fabs(y[j]);
+    }
+    return z->f_norm[r] * sum + gain[0] * rhs_off + m * DBL_EPSILON * size;
+}
+
+/* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. In the norm
+ * of B, absolute, and with gain_j of hdi_ritz_gain, the parts are
+ *   solver    |f| beta gain_(m-1), for what the basis leaves out
+ *   rounding  |f| sum_j gain_j (1/sqrt(b_ratio) (2 seen + 1/8, and 1 with a full B) noise_j + 4 eps |T_j|)
+ *             + gain_0 rhs_off + m eps |y|_1, and those of means and of f: hdi_conserve_off, f_off
+ *   local     on a part of the mesh, hdi_rim_bound
+ * There is no rational one, and z->before adds to these after the first window. rhs_off is zero for one
+ * vertex, f_off but for k_t with a full B. hdi_krylov_miss stops by the same norm; in values a bound is
+ * larger by |u|_B/(sqrt(b_ratio min B_vv) max |u_v|). */
+static void hdi_krylov_judge(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
                               hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
     const int32_t m = z->done[r];
-    double most[HDI_KRYLOV_MAX];
+    double gain[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
     lane->off = z->before[r];                    /* K_t makes no error larger */
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     if (m > 0) {
-        hdi_ritz_most(z->ritz + r, t / z->g, most);
-        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * most[m - 1]);
-        lane->off.rounding += hdi_krylov_rounding(z, r, most, y, lane->rhs_off);
+        hdi_ritz_gain(z->ritz + r, t / z->g, gain);
+        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * gain[m - 1]);
+        lane->off.rounding += hdi_krylov_rounding(z, r, gain, y, lane->rhs_off);
         if (HDI_HAS_LOCAL && z->rim) lane->off.local += hdi_rim_bound(z, r, t, e);
     }
     hdi_conserve(lap, lane, 1);
@@ -14869,7 +14880,7 @@ static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t
                                  double miss_bound[2], hd_error *e) {
     const double before = z->before[r].solver / z->f_norm[r];
     const double rest = z->fixed[r] / (z->f_norm[r] * z->f_norm[r]);
-    double room[3 * HDI_KRYLOV_MAX], most[2];
+    double room[3 * HDI_KRYLOV_MAX], gain[2];
     hdi_ritz s;
     int32_t q;
     miss_bound[0] = miss_bound[1] = 0;
@@ -14879,8 +14890,8 @@ static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t
         /* the last and the first are the worst, as a rule */
         const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
         double asked = hdi_ritz_size(&s, tau), bound;
-        hdi_ritz_most(&s, tau, most);
-        bound = s.beta * most[1];
+        hdi_ritz_gain(&s, tau, gain);
+        bound = s.beta * gain[1];
         asked = tol * sqrt(asked * asked + rest);
         if (q == 0 && z->last > 0) {
             const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
@@ -17105,17 +17116,18 @@ static void hdi_steps_cost(const hd_heat *heat, hd_solver solver, double t, int3
     const hd_laplacian *lap = heat->source;
     const hdi_precond_row *precond = hdi_preconds + heat->opts.precond;
     const double nnz = (double)lap->L.nnz, n = lap->n_active, factors = precond->entries ? nnz : 0;
+    const double products = 1 + precond->products;
     const double digits = hdi_max(0.1, -log10(heat->opts.tol) / 9), x = hdi_min(t * heat->local, n);
     const double lanczos = 3 + hdi_min(8 * sqrt(x * digits), n), each = lap->B ? 21 : 1;
-    const double cocg = (solver == HD_SOLVER_MINRES ? 3.5 : precond->steps) * digits * sqrt(poles / 5.0);
+    const double cocg = (solver == HD_SOLVER_MINRES ? 3.5 : 1) * precond->steps * digits * sqrt(poles / 5.0);
     const double steps = hdi_min(cocg * (5 + 14 * pow(x, 0.4)), (double)heat->opts.max_iterations * poles);
     if (solver == HD_SOLVER_LANCZOS) {
         c->flops += k * lanczos * each * (2 * nnz + 12 * n);
         c->seconds += k * lanczos * (each * (12 * nnz + 80 * n) / HDI_RATE_BYTES + lanczos * 0.4e-6);
         return;
     }
-    c->flops += k * steps * ((lap->B ? 8 : 4) * nnz + 8 * factors + 40 * n);
-    c->seconds += k * steps * ((lap->B ? 20 : 12) * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
+    c->flops += k * steps * ((lap->B ? 8 : 4) * products * nnz + 8 * factors + 40 * n);
+    c->seconds += k * steps * ((lap->B ? 20 : 12) * products * nnz + 20 * factors + 130 * n) / HDI_RATE_BYTES;
     if (heat->fam.filled && heat->fam.t == t) return;
     c->flops += poles * 2 * factors * (nnz / n);
     c->seconds += poles * factors * (20 + nnz / n) * 1e-9;
@@ -17126,7 +17138,7 @@ enum { HDI_POLES_EXPECTED = 5 };
 
 /* ---- requests and calls ---- */
 
-/* Fields f and g, and columns. The adjoint K_t' g is B k_t g. */
+/* Fields f and g, and columns of K_t (operator) and k_t. The adjoint K_t' g is B k_t g. */
 typedef enum hdi_item {
     HDI_ITEM_FIELD, HDI_ITEM_ADJOINT, HDI_ITEM_OPERATOR, HDI_ITEM_SYMMETRIC
 } hdi_item;
@@ -17740,21 +17752,6 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
 
 /* ---- errors of answers ---- */
 
-/* A new ledger for a lane's answer by the method. The lane says how its rounding is known. */
-static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h, const hdi_lane *lane) {
-    const int poles = h->solver != HD_SOLVER_LANCZOS;   /* which krylov is, too */
-    const int still = h->t == 0 || h->equal;
-    const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
-    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
-    const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
-    const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
-                             : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
-    hdi_ledger ledger = hdi_ledger_begin(rational, solver, lane->rounding, 0);
-    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, lane->rounding, 0);
-    ledger.evidence.local = !h->part ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
-    return ledger;
-}
-
 /* How much the residuals of a column's systems change its sum by the weights of set. Poles of times that
  * share them differ by a factor, and so do the solutions; residuals are the same. */
 static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *lane,
@@ -17767,6 +17764,21 @@ static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *
         off.by_m += weight * hdi_pole_gain(set->theta[p]);
     }
     return off;
+}
+
+/* A new ledger for a lane's answer by the method. The lane says how its rounding is known. */
+static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h, const hdi_lane *lane) {
+    const int poles = h->solver != HD_SOLVER_LANCZOS;   /* of krylov that is the solver, too */
+    const int still = h->t == 0 || h->equal;
+    const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
+    const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
+    const hd_evidence rational = still || !poles || itself ? HD_EVIDENCE_NONE : hdi_set_evidence(set);
+    const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
+                             : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
+    hdi_ledger ledger = hdi_ledger_begin(rational, solver, lane->rounding, 0);
+    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, lane->rounding, 0);
+    ledger.evidence.local = !h->part ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
+    return ledger;
 }
 
 /* The bounds of a lane's error at the vertices of the components where the answer is not zero, or of all if
@@ -18303,7 +18315,7 @@ static hd_status hdi_krylov_store(hdi_heat_call *h, int32_t n, int32_t q, int32_
         lane->status = HD_OK;
         if (lane->skip) continue;
         if (z->u[p + i] != lane->u) memcpy(lane->u, z->u[p + i], bytes);
-        hdi_krylov_answer(z, i, h->times[q] - z->from, z->y[p + i], heat->drift, lane, h->e);
+        hdi_krylov_judge(z, i, h->times[q] - z->from, z->y[p + i], heat->drift, lane, h->e);
         if (h->e->status < 0) return h->e->status;
         if (lane->off.solver > heat->opts.tol * lane->u_norm ||
             lane->off.rounding > heat->limit * lane->u_norm) lane->status = HD_WARN_ACCURACY;
@@ -19778,29 +19790,6 @@ static hd_status hdi_heat_run(hdi_heat_call *h) {
     return hdi_heat_end(h);
 }
 
-/* Makes a request of entries (i[q], j[q]), sorted by column, with a ledger for each time, in h. list: what
- * the request points to. */
-static hd_status hdi_entry_list_make(hdi_heat_call *h, hdi_entry_list *list, int64_t n, const int32_t *i,
-                                     const int32_t *j) {
-    int64_t q;
-    list->n = n;
-    list->rows = i;
-    list->order = HDI_TAKE(&h->s, hdi_pair, n);
-    list->begin = HDI_TAKE(&h->s, int64_t, n + 1);
-    list->ledger = HDI_TAKE(&h->s, hdi_ledger, h->ask.n_times);
-    if (h->e->status < 0) return h->e->status;
-    for (q = 0; q < n; q++) {
-        list->order[q].key = (uint64_t)j[q];
-        list->order[q].id = q;
-    }
-    hdi_sort_pairs(list->order, n);
-    for (q = 0; q < n; q++)                      /* at most as many distinct columns as vertices */
-        if (q == 0 || list->order[q].key != list->order[q - 1].key) list->begin[h->ask.k++] = q;
-    list->begin[h->ask.k] = n;
-    h->ask.list = list;
-    return HD_OK;
-}
-
 /* ---- requests, and plans by their options ---- */
 
 /* Checks a request of fields, and runs it. derivative: in time. */
@@ -21175,19 +21164,32 @@ static hd_status hdi_diagonals_by_patches(const hdi_diagonals *to, const char *r
     return to->task.h->e->status < 0 ? to->task.h->e->status : hdi_patches_run(&x);
 }
 
-/* A query for diagonals, traces or both. */
-static hd_status hdi_diagonals_answer(hdi_diagonals *to) {
-    hdi_heat_call *h = to->task.h;
-    const int may = hdi_patches_can(h->heat);
-    const hd_report rep = *h->rep;
+HEATDIFF_API HDI_COLD hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
+                                                 const double *t, double *D, size_t ldd, double *Z,
+                                                 double *bound, hd_report *report, hd_error *err) {
+    hdi_diagonals to;
     hdi_patches x;
-    if (may && hdi_patches_pay(&x, to, 1)) return hdi_patches_run(&x);
-    if (h->e->status < 0 || hdi_diagonals_run(h, to) >= 0 || !may || !hdi_over_limit(h->heat->ctx, h->e))
-        return h->e->status;
-    hdi_error_clear(h->e);
-    *h->rep = rep;
-    hdi_heat_free_factors(h->heat);
-    return hdi_diagonals_by_patches(to, HDI_PATCHES_FIT);
+    hdi_heat_call h;
+    int may;
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
+        hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
+    if (!D && !Z) hdi_missing(h.e);
+    memset(&to, 0, sizeof to);
+    to.task.h = &h;
+    to.mass = kernel == HD_KERNEL_OPERATOR;
+    to.D = D;
+    to.ldd = hdi_leading(&h, ldd);
+    to.Z = Z;
+    to.bound = bound;
+    may = h.e->status >= 0 && hdi_patches_can(heat);
+    if (may && hdi_patches_pay(&x, &to, 1)) (void)hdi_patches_run(&x);
+    else if (h.e->status >= 0 && hdi_diagonals_run(&h, &to) < 0 && may && hdi_over_limit(heat->ctx, h.e)) {
+        hdi_heat_free_factors(heat);
+        memset(h.rep, 0, sizeof *h.rep);
+        hdi_error_clear(h.e);
+        (void)hdi_diagonals_by_patches(&to, HDI_PATCHES_FIT);
+    }
+    return hdi_heat_end(&h);
 }
 
 /* Entries, in values [n_times][n], by patches around their vertices. 0: they are not all of the diagonal. */
@@ -21219,6 +21221,36 @@ static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
     return 1;
+}
+
+HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
+                                       int64_t n_pairs, const int32_t *i, const int32_t *j, double *values,
+                                       hd_report *report, hd_error *err) {
+    hdi_heat_call h;
+    hdi_entry_list list;
+    int64_t q;
+    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 0) < 0 ||
+        hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
+    if (n_pairs > 0 && !values) hdi_missing(h.e);
+    if (h.e->status < 0 || hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
+        return hdi_heat_end(&h);
+    list.n = n_pairs;
+    list.rows = i;
+    list.values = values;
+    list.order = HDI_TAKE(&h.s, hdi_pair, n_pairs);
+    list.begin = HDI_TAKE(&h.s, int64_t, n_pairs + 1);
+    list.ledger = HDI_TAKE(&h.s, hdi_ledger, h.ask.n_times);
+    for (q = 0; q < n_pairs && h.e->status >= 0; q++) {
+        list.order[q].key = (uint64_t)j[q];
+        list.order[q].id = q;
+    }
+    if (h.e->status < 0) return hdi_heat_end(&h);
+    hdi_sort_pairs(list.order, n_pairs);
+    for (q = 0; q < n_pairs; q++)                /* at most as many distinct columns as vertices */
+        if (q == 0 || list.order[q].key != list.order[q - 1].key) list.begin[h.ask.k++] = q;
+    list.begin[h.ask.k] = n_pairs;
+    h.ask.list = &list;
+    return hdi_heat_run(&h);
 }
 
 /* ==== [28] diffusion ====
@@ -22066,7 +22098,6 @@ static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
 /* A query for farthest points. */
 typedef struct hdi_samples {
     hdi_distance_query of;
-    double t;
     int32_t count, *vertex;
     int32_t n_from;              /* sources that come before all points */
     const hdi_terms *terms;      /* [n_from] */
@@ -22118,49 +22149,74 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     return hdi_direct_only(h);
 }
 
-/* Runs a query for distances to all vertices from sources. */
-static hd_status hdi_distances_run(hd_heat *heat, hdi_distances *to, const hd_sources *sources,
-                                     int32_t n_times, const double *t, hd_report *report, hd_error *err) {
+HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                        const double *t, const hd_sources *sources, double *D, size_t ldd,
+                                        hd_report *report, hd_error *err) {
+    hdi_distances to;
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, to->of.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    memset(&to, 0, sizeof to);
+    to.of.kind = hdi_distance_of(kind);
+    to.D = D;
+    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    if (!sources || (sources->count > 0 && !to->D)) hdi_missing(h.e);
-    to->ld = hdi_leading(&h, to->ld);
-    if (h.e->status >= 0) to->source = hdi_terms_all(sources, heat->source, 1, &h.s);
-    to->k = h.e->status >= 0 ? sources->count : 0;
-    if (h.e->status < 0 || to->k == 0) return hdi_heat_end(&h);
-    hdi_distance_task(&to->of, &h, to->k);
-    to->of.answer = hdi_distances_answer;
-    to->of.task.together = hdi_distances_together;
-    (void)hdi_distance_answer(&to->of);
+    if (!sources || (sources->count > 0 && !D)) hdi_missing(h.e);
+    to.ld = hdi_leading(&h, ldd);
+    if (h.e->status >= 0) to.source = hdi_terms_all(sources, heat->source, 1, &h.s);
+    to.k = h.e->status >= 0 ? sources->count : 0;
+    if (to.k == 0) return hdi_heat_end(&h);
+    hdi_distance_task(&to.of, &h, to.k);
+    to.of.answer = hdi_distances_answer;
+    to.of.task.together = hdi_distances_together;
+    (void)hdi_distance_answer(&to.of);
     return hdi_heat_end(&h);
 }
 
-/* Runs a query for pairs whose arguments are checked. */
-static hd_status hdi_pairs_run(hdi_heat_call *h, hdi_pairs *to) {
-    hdi_distance_task(&to->of, h, 1);
-    to->of.answer = hdi_pairs_answer;
-    to->of.task.poles = hdi_pairs_by_poles;
-    return hdi_heat_sparing(h, &to->of.task);
+HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
+                                              const double *t, int64_t n_pairs, const int32_t *i,
+                                              const int32_t *j, double *d, hd_report *report,
+                                              hd_error *err) {
+    hdi_heat_call h;
+    hdi_pairs to;
+    to.of.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
+        return hdi_heat_end(&h);
+    if (n_pairs > 0 && !d) hdi_missing(h.e);
+    to.n = n_pairs;
+    to.i = i;
+    to.j = j;
+    to.d = d;
+    if (h.e->status < 0 || hdi_pairs_check(&h, n_pairs, i, j) < 0 || n_pairs == 0) return hdi_heat_end(&h);
+    hdi_distance_task(&to.of, &h, 1);
+    to.of.answer = hdi_pairs_answer;
+    to.of.task.poles = hdi_pairs_by_poles;
+    (void)hdi_heat_sparing(&h, &to.of.task);
+    return hdi_heat_end(&h);
 }
 
-static hd_status hdi_sample_run(hd_heat *heat, hdi_samples *a, const hd_sources *sources, hd_report *report,
-                                hd_error *err) {
+HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
+                                      const hd_sources *sources, int32_t count, int32_t *vertex,
+                                      double *distance, hd_report *report, hd_error *err) {
+    hdi_samples a;
     hdi_heat_call h;
-    if (hdi_distance_begin(&h, heat, a->of.kind, 1, &a->t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
+    memset(&a, 0, sizeof a);
+    a.of.kind = hdi_distance_of(kind);
+    if (hdi_distance_begin(&h, heat, a.of.kind, 1, &t, 0, report, err) < 0 || !HDI_HAS_DIFFUSION)
         return hdi_heat_end(&h);
-    if (a->count < 1 || a->count > heat->source->n_active)
-        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, a->count);
-    else if (!a->vertex) hdi_missing(h.e);
-    if (h.e->status >= 0 && sources) a->terms = hdi_terms_all(sources, heat->source, 1, &h.s);
-    a->n_from = sources ? sources->count : 0;
-    a->nearest = HDI_TAKE(&h.s, double, heat->source->n);
-    a->u = HDI_TAKE(&h.s, double, heat->source->n);
+    if (count < 1 || count > heat->source->n_active)
+        hdi_fail_row(h.e, HD_ERR_ARGUMENT, "sample: more points than vertices, or none", -1, -1, count);
+    else if (!vertex) hdi_missing(h.e);
+    if (h.e->status >= 0 && sources) a.terms = hdi_terms_all(sources, heat->source, 1, &h.s);
+    a.n_from = sources ? sources->count : 0;
+    a.nearest = HDI_TAKE(&h.s, double, heat->source->n);
+    a.u = HDI_TAKE(&h.s, double, heat->source->n);
     if (h.e->status < 0) return hdi_heat_end(&h);
-    hdi_distance_task(&a->of, &h, a->count + a->n_from);
-    a->of.answer = hdi_sample_answer;
-    a->of.group = a->of.highest = 1;
-    (void)hdi_distance_answer(&a->of);
+    a.count = count;
+    a.vertex = vertex;
+    a.distance = distance;
+    hdi_distance_task(&a.of, &h, count + a.n_from);
+    a.of.answer = hdi_sample_answer;
+    a.of.group = a.of.highest = 1;
+    (void)hdi_distance_answer(&a.of);
     return hdi_heat_end(&h);
 }
 
@@ -22474,15 +22530,26 @@ static HDI_COLD hd_status hdi_estimate_run(hdi_heat_call *h, hd_query query, int
     return HD_OK;
 }
 
-/* What is known when the call's own arrays are gone. */
-static void hdi_estimate_close(const hd_heat *heat, hd_estimate *to) {
+HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
+                                        int32_t k, hd_estimate *estimate, hd_error *err) {
+    const hdi_item as = query == HD_QUERY_FIELDS ? HDI_ITEM_FIELD : HDI_ITEM_SYMMETRIC;
+    hdi_heat_call h;
+    hd_estimate found;
     int32_t q;
-    to->analysed = heat->elim.ctx || heat->few.ctx;
-    to->bytes_in_use = (double)heat->ctx->bytes_in_use;
-    to->bytes_left = hdi_bytes_left(heat->ctx);
-    to->cost[HD_METHOD_AUTO] = to->cost[to->method];
+    memset(&found, 0, sizeof found);
+    if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
+    if (!estimate) hdi_missing(h.e);
+    else (void)hdi_estimate_run(&h, query, n_times, t, k, &found);
+    if (hdi_heat_end(&h) < 0) return h.rep->status;
+    /* the call's own arrays are gone */
+    found.analysed = heat->elim.ctx || heat->few.ctx;
+    found.bytes_in_use = (double)heat->ctx->bytes_in_use;
+    found.bytes_left = hdi_bytes_left(heat->ctx);
+    found.cost[HD_METHOD_AUTO] = found.cost[found.method];
     for (q = 0; q <= HD_METHOD_LOCAL; q++)
-        to->cost[q].fits = to->cost[q].possible && to->cost[q].bytes <= to->bytes_left;
+        found.cost[q].fits = found.cost[q].possible && found.cost[q].bytes <= found.bytes_left;
+    *estimate = found;
+    return h.rep->status;
 }
 
 /* ==== [29] geodesic ====
@@ -22860,24 +22927,58 @@ static hd_status hdi_geo_make(hd_geodesic *g, const hd_mesh *mesh, const hd_geod
     return hdi_scope_end(&s);
 }
 
-/* The plan for new coordinates. Queries do not read g->lap: until g->ready is 0 nothing has changed. */
-static hd_status hdi_geo_update(hd_geodesic *g, const double *xyz, hd_error *e) {
-    const hdi_mesh *moving = &g->lap->moving->mesh;
-    double *mass = g->x;
+HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC && g) hdi_geo_free(g); }
+
+HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
+                                          const hd_geodesic_opts *opts, hd_error *err) {
+    hd_geodesic_opts o;
+    hd_geodesic *g;
+    hdi_call c;
+    memset(&o, 0, sizeof o);
+    if (opts) o = *opts;
+    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
+        return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
+    if (!out || !mesh) return hdi_missing(c.e);
+    g = (hd_geodesic *)hdi_alloc_zero(c.ctx, 1, sizeof *g, c.e);
+    if (!g) return c.e->status;
+    g->ctx = hdi_enter_keep(&c, &g->context);
+    hdi_hold(g->ctx);
+    if (hdi_geo_make(g, mesh, &o, c.e) >= 0) *out = g;
+    else hdi_geo_free(g);
+    return c.e->status;
+}
+
+/* Queries do not read g->lap: until g->ready is 0 nothing has changed. */
+HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
+    const hdi_mesh *moving;
+    const double *xyz;
+    double *mass;
+    hdi_call c;
+    hdi_scope s;
     int32_t f;
-    if (hdi_lap_update(g->lap, xyz, e) < 0) return e->status;
-    for (f = 0; f < moving->m; f++)              /* areas of those left out are negative */
+    if (hdi_enter(&c, g ? g->ctx : NULL, 1, err) < 0) return c.e->status;
+    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
+    if (!g) return hdi_missing(c.e);
+    if (!g->lap)
+        return hdi_fail(c.e, HD_ERR_ARGUMENT, "geodesic: the plan was not made with the option updatable");
+    s = hdi_scope_begin(c.ctx, c.e);
+    xyz = hdi_view_moved(mesh, g->n, &s);
+    if (c.e->status < 0 || hdi_lap_update(g->lap, xyz, c.e) < 0) return hdi_scope_end(&s);
+    moving = &g->lap->moving->mesh;
+    for (f = 0; f < moving->m && c.e->status >= 0; f++)      /* areas of those left out are negative */
         if (moving->area[f] == 0)
-            return hdi_fail_face(e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
-                                 hdi_face_name(moving, f), -1, 0);
-    if (hdi_geo_masses(g, g->lap, mass, e) < 0) return e->status;
+            hdi_fail_face(c.e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
+                          hdi_face_name(moving, f), -1, 0);
+    mass = g->x;
+    if (c.e->status < 0 || hdi_geo_masses(g, g->lap, mass, c.e) < 0) return hdi_scope_end(&s);
     g->ready = 0;
     g->x = g->mass;
     g->mass = mass;
     hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
-    g->ready = hdi_geo_factors(g, g->lap, e) >= 0;
-    return e->status;
+    g->ready = hdi_geo_factors(g, g->lap, c.e) >= 0;
+    return hdi_scope_end(&s);
 }
 
 /* A point of a source, or a piece of a curve from a to b, in barycentric coordinates of up to three rows. A
@@ -23429,27 +23530,6 @@ static hd_status hdi_geo_widen(hd_geodesic *g, hd_error *e) {
     return HD_OK;
 }
 
-/* Columns of distances, ldd apart, from sources that are checked. */
-static hd_status hdi_geo_distances(hd_geodesic *g, const hd_sources *from, double *D, size_t ldd,
-                                   hd_geodesic_report *rep, hd_error *e) {
-    const int vertices = hdi_source_corners(from) == 1 && !from->curve && !from->first;
-    const int32_t n = from->count;
-    hdi_geo_source s[HDI_GEO_WIDE];
-    int32_t m, c, k;
-    for (m = 0; m < n && e->status >= 0; m += k) {
-        hdi_scope scope = hdi_scope_begin(g->ctx, e);
-        k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
-        (void)hdi_progress(g->ctx, "solve", (double)m / n, e);
-        for (c = 0; c < k && e->status >= 0; c++) {
-            if (hdi_geo_source_make(s + c, g, from, m + c, &scope) < 0) e->column = m + c;
-            s[c].d = D + (size_t)(m + c) * ldd;
-        }
-        if (e->status >= 0 && (k == 1 || hdi_geo_widen(g, e) >= 0)) (void)hdi_geo_solve(g, s, k, rep, e);
-        (void)hdi_scope_end(&scope);
-    }
-    return e->status;
-}
-
 /* Checks the arguments of a query, and fills the report with what the plan says. */
 static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const double *D, size_t *ldd,
                                hd_geodesic_report *rep, hd_error *err, hdi_call *c) {
@@ -23472,6 +23552,33 @@ static hd_status hdi_geo_begin(hd_geodesic *g, const hd_sources *sources, const 
     *ldd = *ldd ? *ldd : (size_t)g->n;
     hdi_refuse(*ldd < (size_t)g->n, "geodesic: the leading dimension is smaller than n", c->e);
     return c->e->status < 0 ? c->e->status : hdi_sources_check(sources, g->n, c->e);
+}
+
+HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
+                                            size_t ldd, hd_geodesic_report *report, hd_error *err) {
+    hdi_geo_source s[HDI_GEO_WIDE];
+    hdi_call c;
+    const int asked = hdi_geo_begin(g, sources, D, &ldd, report, err, &c) >= 0 && HDI_HAS_GEODESIC;
+    const int32_t n = asked ? sources->count : 0;
+    const int vertices = asked && hdi_source_corners(sources) == 1 && !sources->curve && !sources->first;
+    int32_t m, q, k;
+    for (m = 0; m < n && c.e->status >= 0; m += k) {
+        hdi_scope scope = hdi_scope_begin(g->ctx, c.e);
+        k = vertices && n - m >= HDI_GEO_WIDE_FROM ? hdi_low32(n - m, HDI_GEO_WIDE) : 1;
+        (void)hdi_progress(g->ctx, "solve", (double)m / n, c.e);
+        for (q = 0; q < k && c.e->status >= 0; q++) {
+            if (hdi_geo_source_make(s + q, g, sources, m + q, &scope) < 0) c.e->column = m + q;
+            s[q].d = D + (size_t)(m + q) * ldd;
+        }
+        if (c.e->status >= 0 && (k == 1 || hdi_geo_widen(g, c.e) >= 0))
+            (void)hdi_geo_solve(g, s, k, report, c.e);
+        (void)hdi_scope_end(&scope);
+    }
+    if (report && c.e->status < 0) {
+        report->status = c.e->status;
+        report->error = *c.e;
+    }
+    return report ? report->status : c.e->status;
 }
 
 /* ==== [30] api ====
@@ -23977,150 +24084,6 @@ HEATDIFF_API hd_status hd_heat_column(hd_heat *heat, hd_kernel kernel, double t,
                                       hd_report *report, hd_error *err) {
     const hd_sources one = hd_vertices(1, &source);
     return hd_heat_columns(heat, kernel, 1, &t, &one, u, 0, report, err);
-}
-
-HEATDIFF_API hd_status hd_heat_entries(hd_heat *heat, hd_kernel kernel, int32_t n_times, const double *t,
-                                       int64_t n_pairs, const int32_t *i, const int32_t *j, double *values,
-                                       hd_report *report, hd_error *err) {
-    hdi_heat_call h;
-    hdi_entry_list list;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 0) < 0 ||
-        hdi_pairs_check(&h, n_pairs, i, j) < 0) return hdi_heat_end(&h);
-    if (n_pairs > 0 && !values) hdi_missing(h.e);
-    list.values = values;
-    if (h.e->status >= 0 && hdi_entries_by_patches(&h, kernel == HD_KERNEL_OPERATOR, n_pairs, i, j, values))
-        return hdi_heat_end(&h);
-    if (h.e->status >= 0) (void)hdi_entry_list_make(&h, &list, n_pairs, i, j);
-    return hdi_heat_run(&h);
-}
-
-HEATDIFF_API HDI_COLD hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel, int32_t n_times,
-                                                 const double *t, double *D, size_t ldd, double *Z,
-                                                 double *bound, hd_report *report, hd_error *err) {
-    hdi_diagonals to;
-    hdi_heat_call h;
-    if (hdi_kernel_begin(&h, heat, kernel, report, err) < 0 || hdi_times_check(&h, n_times, t, 1) < 0 ||
-        hdi_diagonal_check(&h) < 0 || !HDI_HAS_DIAGONAL) return hdi_heat_end(&h);
-    if (!D && !Z) hdi_missing(h.e);
-    memset(&to, 0, sizeof to);
-    to.task.h = &h;
-    to.mass = kernel == HD_KERNEL_OPERATOR;
-    to.D = D;
-    to.ldd = hdi_leading(&h, ldd);
-    to.Z = Z;
-    to.bound = bound;
-    if (h.e->status >= 0) (void)hdi_diagonals_answer(&to);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                        const double *t, const hd_sources *sources, double *D, size_t ldd,
-                                        hd_report *report, hd_error *err) {
-    hdi_distances to;
-    memset(&to, 0, sizeof to);
-    to.of.kind = hdi_distance_of(kind);
-    to.D = D;
-    to.ld = ldd;
-    return hdi_distances_run(heat, &to, sources, n_times, t, report, err);
-}
-
-HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
-                                              const double *t, int64_t n_pairs, const int32_t *i,
-                                              const int32_t *j, double *d, hd_report *report,
-                                              hd_error *err) {
-    hdi_heat_call h;
-    hdi_pairs to;
-    to.of.kind = hdi_distance_of(kind);
-    if (hdi_distance_begin(&h, heat, to.of.kind, n_times, t, 1, report, err) < 0 || !HDI_HAS_DIFFUSION)
-        return hdi_heat_end(&h);
-    if (n_pairs > 0 && !d) hdi_missing(h.e);
-    to.n = n_pairs;
-    to.i = i;
-    to.j = j;
-    to.d = d;
-    if (h.e->status >= 0 && hdi_pairs_check(&h, n_pairs, i, j) >= 0 && n_pairs > 0)
-        (void)hdi_pairs_run(&h, &to);
-    return hdi_heat_end(&h);
-}
-
-HEATDIFF_API hd_status hd_heat_sample(hd_heat *heat, hd_distance_kind kind, double t,
-                                      const hd_sources *sources, int32_t count, int32_t *vertex,
-                                      double *distance, hd_report *report, hd_error *err) {
-    hdi_samples a;
-    memset(&a, 0, sizeof a);
-    a.of.kind = hdi_distance_of(kind);
-    a.t = t;
-    a.count = count;
-    a.vertex = vertex;
-    a.distance = distance;
-    return hdi_sample_run(heat, &a, sources, report, err);
-}
-
-HEATDIFF_API hd_status hd_heat_estimate(hd_heat *heat, hd_query query, int32_t n_times, const double *t,
-                                        int32_t k, hd_estimate *estimate, hd_error *err) {
-    const hdi_item as = query == HD_QUERY_FIELDS ? HDI_ITEM_FIELD : HDI_ITEM_SYMMETRIC;
-    hdi_heat_call h;
-    hd_estimate found;
-    hd_status status;
-    memset(&found, 0, sizeof found);
-    if (hdi_heat_begin(&h, heat, as, NULL, err) < 0) return hdi_heat_end(&h);
-    if (!estimate) hdi_missing(h.e);
-    else (void)hdi_estimate_run(&h, query, n_times, t, k, &found);
-    status = hdi_heat_end(&h);
-    if (status < 0) return status;
-    hdi_estimate_close(heat, &found);
-    *estimate = found;
-    return status;
-}
-
-/* ---- geodesic distance ---- */
-
-HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh,
-                                          const hd_geodesic_opts *opts, hd_error *err) {
-    hd_geodesic_opts o;
-    hd_geodesic *g;
-    hdi_call c;
-    memset(&o, 0, sizeof o);
-    if (opts) o = *opts;
-    if (hdi_enter_with(&c, HDI_CLEARED(&o), o.context, "geodesic options: not cleared before use", err) < 0)
-        return c.e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
-    if (!out || !mesh) return hdi_missing(c.e);
-    g = (hd_geodesic *)hdi_alloc_zero(c.ctx, 1, sizeof *g, c.e);
-    if (!g) return c.e->status;
-    g->ctx = hdi_enter_keep(&c, &g->context);
-    hdi_hold(g->ctx);
-    if (hdi_geo_make(g, mesh, &o, c.e) >= 0) *out = g;
-    else hdi_geo_free(g);
-    return c.e->status;
-}
-
-HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
-    const double *xyz;
-    hdi_call c;
-    hdi_scope s;
-    if (hdi_enter(&c, g ? g->ctx : NULL, 1, err) < 0) return c.e->status;
-    if (!HDI_HAS_GEODESIC) return HDI_LEFT_OUT(c.e, GEODESIC, "geodesic distances");
-    if (!g) return hdi_missing(c.e);
-    s = hdi_scope_begin(c.ctx, c.e);
-    hdi_refuse(!g->lap, "geodesic: the plan was not made with the option updatable", c.e);
-    xyz = c.e->status < 0 ? NULL : hdi_view_moved(mesh, g->n, &s);
-    if (c.e->status >= 0) (void)hdi_geo_update(g, xyz, c.e);
-    return hdi_scope_end(&s);
-}
-
-HEATDIFF_API void hd_geodesic_free(hd_geodesic *g) { if (HDI_HAS_GEODESIC && g) hdi_geo_free(g); }
-
-HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *sources, double *D,
-                                            size_t ldd, hd_geodesic_report *report, hd_error *err) {
-    hdi_call c;
-    if (hdi_geo_begin(g, sources, D, &ldd, report, err, &c) >= 0 && HDI_HAS_GEODESIC)
-        (void)hdi_geo_distances(g, sources, D, ldd, report, c.e);
-    if (report && c.e->status < 0) {
-        report->status = c.e->status;
-        report->error = *c.e;
-    }
-    return report ? report->status : c.e->status;
 }
 
 /* ==== [31] closing ====

@@ -343,6 +343,19 @@ static const word *find_word(const word *words, const char *name)
     return NULL;
 }
 
+enum { WORDS_TEXT = 120 };
+
+/* "a, b or c", in text [WORDS_TEXT]. */
+static const char *list_words(const word *words, char *text)
+{
+    size_t used = 0;
+    int q;
+    for (q = 0; words[q].name && used < WORDS_TEXT; q++)
+        used += (size_t)snprintf(text + used, WORDS_TEXT - used, "%s%s",
+                                 q == 0 ? "" : words[q + 1].name ? ", " : " or ", words[q].name);
+    return text;
+}
+
 static const char *word_of(const word *words, int value)
 {
     for (; words->name; words++)
@@ -444,8 +457,8 @@ typedef struct option_def {
     const word *words;
     long least, most;
     const char *value;               /* its name in the help; NULL: a flag */
-    const char *takes;               /* "--t takes ..." */
-    const char *help;
+    const char *takes;               /* "--t takes ..."; NULL: any of the words */
+    const char *help;                /* @: the words */
 } option_def;
 
 /* ---- parsing of values: all of the text or nothing, no white space, no hexadecimal ---- */
@@ -810,12 +823,10 @@ static const option_def OPTIONS[] = {
       "instead: the distances among the sources, a symmetric matrix" },
     { "input", 0, CMD_PAIRS, 0, parse_text, AT(input), NULL, 0, 0, "P", "a file name",
       "pairs of vertices: two ids a line, as text or .npy" },
-    { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME",
-      "classical, weighted, commute or biharmonic",
+    { "definition", 0, CMD_METRIC, 0, parse_words, AT(definition), DEFINITIONS, 0, 0, "NAME", NULL,
       "classical (default): d^2 = k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j);\n"
       "weighted: d^2 = (e_i - e_j)' B K_2t (e_i - e_j); commute and\nbiharmonic: without --t" },
-    { "laplacian", 0, CMD_LAPLACIAN, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME",
-      "fem, voronoi-cot, cot, polygon, voronoi-exp or exp",
+    { "laplacian", 0, CMD_LAPLACIAN, 0, parse_words, AT(laplacian), LAPLACIANS, 0, 0, "NAME", NULL,
       "fem (default of triangles), voronoi-cot, cot: other faces are\n"
       "split; polygon (default of meshes with other faces); of points:\n"
       "voronoi-exp (default) or exp, which take the vertices of a mesh\nas points" },
@@ -835,15 +846,13 @@ static const option_def OPTIONS[] = {
       "edges, from its first corner to the second, from there to the\n"
       "third, and back, as text or .npy. The coordinates of the\n"
       "vertices then serve only pictures and files" },
-    { "border", 0, CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", "natural or dirichlet",
+    { "border", 0, CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", NULL,
       "of meshes: natural (default): borders move as all else does, and\n"
       "holes widen; dirichlet: the vertices of borders stay where they are" },
-    { "border", 0, CMD_LAPLACIAN & ~CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME",
-      "natural or dirichlet",
+    { "border", 0, CMD_LAPLACIAN & ~CMD_SMOOTH, 0, parse_words, AT(border), BORDERS, 0, 0, "NAME", NULL,
       "of meshes: natural (default): no heat leaves through a border;\n"
       "dirichlet: the vertices of borders are held at zero" },
-    { "border", 0, CMD_GEODESIC, 0, parse_words, AT(border), GEODESIC_BORDERS, 0, 0, "NAME",
-      "natural, mean or dirichlet",
+    { "border", 0, CMD_GEODESIC, 0, parse_words, AT(border), GEODESIC_BORDERS, 0, 0, "NAME", NULL,
       "while heat flows: natural (default), held at zero (dirichlet), or\n"
       "the mean of both, with which a longer --t such as 8h2 is best" },
     { "lambda", 0, CMD_GEODESIC, 0, parse_lambda, 0, NULL, 0, 0, "X", "a number above 0, such as 1",
@@ -858,9 +867,9 @@ static const option_def OPTIONS[] = {
     { "weight-cut", 0, CMD_LAPLACIAN, 0, parse_weight_cut, 0, NULL, 0, 0, "W",
       "a number between 0 and 1, such as 1e-4",
       "of points: exponentials below W are left out (1e-8); 1e-4 has\nhalf as many non-zeros" },
-    { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME",
-      "operator or symmetric", "operator: K_t (default); symmetric: k_t = K_t B^-1" },
-    { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", "operator or symmetric",
+    { "kernel", 0, CMD_KERNEL | CMD_PAIRS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", NULL,
+      "operator: K_t (default); symmetric: k_t = K_t B^-1" },
+    { "kernel", 0, CMD_HKS, 0, parse_words, AT(kernel), KERNELS, 0, 0, "NAME", NULL,
       "symmetric: k_t(x,x) (default); operator: the diagonal of K_t" },
     { "normalise", 0, CMD_HKS, 0, parse_flag, AT(normalise), NULL, 0, 0, NULL, "no value",
       "divides by the heat trace at each time: the integral is 1" },
@@ -871,44 +880,37 @@ static const option_def OPTIONS[] = {
     { "degree", 0, CMD_HEAT, 0, parse_integer, AT(degree), NULL, 1, 14, "R", "1..14",
       "degree of the rational approximation, 1..14 (default: by the\n"
       "error); not for krylov and local" },
-    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", "uniform or kernel",
+    { "poles", 0, CMD_HEAT, 0, parse_words, AT(poles), POLES, 0, 0, "NAME", NULL,
       "uniform (default of diffuse, smooth) or kernel (of all others)" },
     { "tol", 0, CMD_SPECTRUM, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-10",
       "residuals relative to eigenvalues (1e-10)" },
     { "tol", 0, CMD_HEAT, 0, parse_tol, 0, NULL, 0, 0, "E", "a number between 0 and 1, such as 1e-9",
       "relative error that iterative methods aim at (1e-9)" },
-    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
-      "auto, direct, krylov, iterative or local",
+    { "method", 0, CMD_INVERTS, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", NULL,
       "direct: factors of the whole mesh; local: of patches, as small\n"
       "as --memory-limit asks for; auto (default): what costs less, or\n"
       "fits" },
-    { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME",
-      "auto, direct, krylov, iterative or local",
+    { "method", 0, CMD_ANYHOW, 0, parse_words, AT(method), METHODS, 0, 0, "NAME", NULL,
       "direct: factors of all poles, for many sources or fields;\n"
       "krylov: one factor for one source and for many times;\n"
       "iterative: no factor; local: only the part that heat reaches;\n"
       "auto (default): what costs least" },
-    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
-      "auto, amd or dissection",
+    { "ordering", 0, CMD_GEODESIC, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", NULL,
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
-    { "ordering", 0, CMD_SPECTRUM, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
-      "auto, amd or dissection",
+    { "ordering", 0, CMD_SPECTRUM, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", NULL,
       "amd (minimum degree), dissection (nested, in space) or auto\n(default: by the size)" },
-    { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME",
-      "auto, amd or dissection",
+    { "ordering", 0, CMD_HEAT, 0, parse_words, AT(ordering), ORDERINGS, 0, 0, "NAME", NULL,
       "of all but iterative: amd (minimum degree), dissection\n"
       "(nested, in space) or auto (default: by the size)" },
-    { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME",
-      "cocg, minres or lanczos",
-      "of iterative: cocg, minres or lanczos (default: by the time)" },
-    { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME",
-      "none, jacobi, ssor, ildl or mildl", "of iterative: none, jacobi, ssor, ildl or mildl (default)" },
+    { "solver", 0, CMD_ANYHOW, 0, parse_words, AT(solver), SOLVERS, 0, 0, "NAME", NULL,
+      "of iterative: @ (default: by the time)" },
+    { "precond", 0, CMD_ANYHOW, 0, parse_words, AT(precond), PRECONDS, 0, 0, "NAME", NULL,
+      "of iterative: @ (default: mildl)" },
     { "max-iterations", 0, CMD_ANYHOW, 0, parse_integer, AT(max_iterations), NULL, 1, 2000000000, "N",
       "a number from 1", "of iterative: limit of the iterations per system" },
     { "threads", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_integer, AT(threads), NULL, 1, 1024, "N",
       "1..1024", "worker threads (default: all)" },
-    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME",
-      "auto, none, avx2 or avx512",
+    { "simd", 0, CMD_SOLVES | CMD_DEMO, 0, parse_words, AT(simd), SIMDS, 0, 0, "NAME", NULL,
       "instruction set: none (plain C), avx2, avx512, as far as the\n"
       "processor has them, or auto (default: its best)" },
     { "memory-limit", 0, CMD_INFO | CMD_SOLVES | CMD_DEMO, 0, parse_bytes, 0, NULL, 0, 0, "BYTES",
@@ -952,13 +954,13 @@ static const option_def OPTIONS[] = {
       "degrees AZ,EL, elevation within -90..90",
       "direction of view in degrees: 0,0 looks at the front, 90,0 at\n"
       "the right side (default: one that shows the warmest place)" },
-    { "up", 0, CMD_PICTURE, 0, parse_words, AT(up), AXES, 0, 0, "AXIS", "x, y or z",
+    { "up", 0, CMD_PICTURE, 0, parse_words, AT(up), AXES, 0, 0, "AXIS", NULL,
       "the axis that points up in pictures: x, y (default) or z" },
     { "labels", 0, CMD_RENDER, 0, parse_flag, AT(labels), NULL, 0, 0, NULL, "no value",
       "fields of whole numbers from 0, as --nearest of distance writes:\n"
       "a colour for each, without isolines; -1 is none" },
-    { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME",
-      "ember, lagoon, diverging or grey", "ember (default), lagoon, diverging or grey" },
+    { "colormap", 0, CMD_PICTURE | CMD_DEMO, 0, parse_words, AT(colormap), COLORMAPS, 0, 0, "NAME", NULL,
+      "@ (default: ember)" },
     { "size", 0, CMD_PICTURE, 0, parse_size, 0, NULL, 64, 8192, "WxH", "WxH in pixels, each 64..8192",
       "size of the picture in pixels" },
     { "title", 0, CMD_PICTURE, 0, parse_text, AT(title), NULL, 0, 0, "TEXT", "a text",
@@ -1145,9 +1147,9 @@ static const char *option_text(const option_def *def, char *text, size_t size)
 
 static int take_option(options *o, char *seen, int argc, char **argv, int *i)
 {
-    const char *value, *arg = argv[*i];
+    const char *value, *takes, *arg = argv[*i];
     const option_def *def = find_option(arg, o->command, &value);
-    char name[32], commands[160];
+    char name[32], commands[160], words[WORDS_TEXT];
     int parsed;
     if (!def && (value = meant_option(arg, o->command)) != NULL)
         return fail(USAGE, "%.80s is not an option; did you mean --%s? See heatdiff %s --help", arg, value,
@@ -1160,15 +1162,16 @@ static int take_option(options *o, char *seen, int argc, char **argv, int *i)
         return fail(USAGE, "%s is not an option of %s (but of %s)", name, command_name(o->command), commands);
     }
     if (!def->value && value) return fail(USAGE, "%s takes no value, but '%.80s' is given", name, value);
+    takes = def->takes ? def->takes : list_words(def->words, words);
     if (def->value && !value && ++*i >= argc)
-        return fail(USAGE, "%s takes %s, but nothing follows it", name, def->takes);
+        return fail(USAGE, "%s takes %s, but nothing follows it", name, takes);
     if (def->value && !value) value = argv[*i];
     if (def->is_list && seen[def - OPTIONS])
-        return fail(USAGE, "%s is given twice; it takes %s", name, def->takes);
+        return fail(USAGE, "%s is given twice; it takes %s", name, takes);
     seen[def - OPTIONS] = 1;
     parsed = def->parse(o, def, value);
     if (parsed < 0) return fail_memory("the command line");
-    return parsed ? DONE : fail(USAGE, "%s takes %s, not '%.80s'", name, def->takes, value);
+    return parsed ? DONE : fail(USAGE, "%s takes %s, not '%.80s'", name, takes, value);
 }
 
 static int take_mesh(options *o, const char *arg)
@@ -1510,11 +1513,16 @@ static void print_help(void)
 
 static void print_option(const option_def *def)
 {
-    char left[40];
+    char left[40], words[WORDS_TEXT];
     const char *line = def->help, *end;
+    const int all = (int)strcspn(line, "@");
     int width;
     snprintf(left, sizeof left, def->letter ? "-%c, --%s %s" : "%c   --%s %s",
              def->letter ? def->letter : ' ', def->name, def->value ? def->value : "");
+    if (line[all]) {
+        printf("  %-27s %.*s%s%s\n", left, all, line, list_words(def->words, words), line + all + 1);
+        return;
+    }
     for (;; line = end + 1) {
         end = strchr(line, '\n');
         width = end ? (int)(end - line) : (int)strlen(line);
