@@ -19002,40 +19002,36 @@ static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
     }
 }
 
-/* Takes the cheapest method that fits into `room` bytes, or else iterations. */
-static void hdi_heat_cheapest(hdi_heat_call *h, const hd_cost *by, double room) {
+/* Picks the cheapest method that fits the byte limit by the model, or else iterations. Analyses are made only
+ * where a factorisation could cost least. */
+static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
+    hd_heat *heat = h->heat;
+    /* without iterations there is no retreat */
+    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
+    hdi_elim *m = NULL;
+    hd_cost by[HD_METHOD_LOCAL + 1];
+    double least, cost;
     int32_t q;
-    double least = HUGE_VAL, cost = HUGE_VAL;
-    h->method = HD_METHOD_ITERATIVE;
-    for (q = HD_METHOD_LOCAL; q >= HD_METHOD_ITERATIVE; q--) {
-        if (!by[q].possible) continue;
-        least = hdi_min(least, by[q].seconds);
-        if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
-        h->method = (hd_method)q;
-        cost = by[q].seconds;
-    }
+    do {
+        if (m && hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
+        hdi_heat_costs(h, by);
+        if (h->e->status < 0) return h->e->status;
+        h->method = HD_METHOD_ITERATIVE;
+        for (least = cost = HUGE_VAL, q = HD_METHOD_LOCAL; q >= HD_METHOD_ITERATIVE; q--) {
+            if (!by[q].possible) continue;
+            least = hdi_min(least, by[q].seconds);
+            if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
+            h->method = (hd_method)q;
+            cost = by[q].seconds;
+        }
+        m = hdi_heat_analysis(h);
+    } while (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL && !m->ctx);
     h->rep->reason = hdi_engines[h->method].reason;
     if (h->method == HD_METHOD_ITERATIVE && cost > least)
         h->rep->reason = "factors would not fit the byte limit";
     if (h->method == HD_METHOD_DIRECT && hdi_heat_at_hand(h))
         h->rep->reason = "the factors of the poles are there from calls before";
-}
-
-/* Picks the method by the model. Analyses are made only where a factorisation could cost least. */
-static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
-    hd_heat *heat = h->heat;
-    /* without iterations there is no retreat */
-    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
-    hdi_elim *m;
-    hd_cost by[HD_METHOD_LOCAL + 1];
-    for (;;) {
-        hdi_heat_costs(h, by);
-        if (h->e->status < 0) return h->e->status;
-        hdi_heat_cheapest(h, by, room);
-        m = hdi_heat_analysis(h);
-        if (h->method == HD_METHOD_ITERATIVE || h->method == HD_METHOD_LOCAL || m->ctx) return HD_OK;
-        if (hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
-    }
+    return HD_OK;
 }
 
 /* Picks the method by the first rule that holds, or by the model. */
@@ -19569,25 +19565,6 @@ static int hdi_fields_keep(hdi_heat_call *h) {
 
 /* ---- the run ---- */
 
-/* The means of the components. */
-static void hdi_plain_means(const hdi_heat_call *h, hdi_lane *lane) {
-    const hd_laplacian *lap = h->lap;
-    int32_t i;
-    hdi_lane_means(lane, lap);
-    for (i = 0; i < lap->n_active; i++) lane->u[i] = lane->sums[lap->component[i]];
-    lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
-    hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_item_fields(h->ask.item)));
-}
-
-/* The field itself. */
-static void hdi_plain_field(const hdi_heat_call *h, hdi_lane *lane) {
-    const double plain = h->ask.item == HDI_ITEM_SYMMETRIC ? 2 * DBL_EPSILON : 0;
-    memcpy(lane->u, lane->f, (size_t)h->lap->n_active * sizeof *lane->u);
-    lane->u_norm = lane->f_norm;
-    hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
-    if (lane->f_off > 0) lane->rounding = HD_EVIDENCE_ESTIMATED;
-}
-
 /* The derivative -A f, A = B^-1 L, in units of its largest eigenvalue, as squares might be too small. */
 static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
     const hd_laplacian *lap = h->lap;
@@ -19607,16 +19584,31 @@ static void hdi_plain_rate(const hdi_heat_call *h, hdi_lane *lane) {
                                   (2 * sqrt(sum) + (lap->B ? HDI_MASS_TOL : 4 * DBL_EPSILON) * unit), size));
 }
 
-/* Answers that need no solve: those for t = 0, or the means for very large t. */
+/* Answers that need no solve: the means of the components for very large t, or those for t = 0. */
 static void hdi_plain_solve(hdi_heat_call *h, int32_t n, void *arg) {
+    const hd_laplacian *lap = h->lap;
     hdi_lane *lane = h->heat->lane;
+    const double plain = h->ask.item == HDI_ITEM_SYMMETRIC ? 2 * DBL_EPSILON : 0;
+    int32_t i;
     (void)n, (void)arg;
     if (lane->skip) return;
-    if (h->equal) hdi_plain_means(h, lane);
-    else if (h->rate) hdi_plain_rate(h, lane);
-    else hdi_plain_field(h, lane);
+    if (h->equal) {
+        hdi_lane_means(lane, lap);
+        for (i = 0; i < lap->n_active; i++) lane->u[i] = lane->sums[lap->component[i]];
+        lane->u_norm = sqrt(hdi_max(0, hdi_b_norm2(lap, lane->u, lane->tmp)));
+        hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, 0, hdi_item_fields(h->ask.item)));
+        return;
+    }
+    if (h->rate) {
+        hdi_plain_rate(h, lane);
+    } else {
+        memcpy(lane->u, lane->f, (size_t)lap->n_active * sizeof *lane->u);
+        lane->u_norm = lane->f_norm;
+        hdi_lane_rounding(lane, plain * lane->f_norm + lane->f_off);
+        if (lane->f_off > 0) lane->rounding = HD_EVIDENCE_ESTIMATED;
+    }
     /* at a time that counts as zero */
-    if (!h->equal && h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
+    if (h->ask.t[h->now] > 0) hdi_lane_rounding(lane, HDI_STILL * lane->u_norm);
 }
 
 /* Answers the time under way by the method picked for it. */
