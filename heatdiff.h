@@ -21722,10 +21722,13 @@ static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
-/* Notes the distance whose d^2 is given, with its errors. Returns it. */
-static double hdi_metric_note(const hdi_metric *x, double d2, double rational, double rounding,
-                              hd_report *rep, hdi_ledger *ledger) {
-    const double delta = rational + rounding, d = d2 > 0 ? sqrt(d2) : 0;
+/* The distance between two ends, which is noted with its errors. f_ab, g_ab: of the column of a, whose errors
+ * are off. All that a kind makes of f stands here. */
+static double hdi_metric_between(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
+                                 double f_ab, const double *g_ab, const hdi_column_parts *off,
+                                 hd_report *rep, hdi_ledger *ledger) {
+    const double rational = hdi_metric_rational(x, a, b, g_ab), rounding = hdi_metric_rounding(x, a, b, off);
+    const double d2 = a->f - (2 * f_ab - b->f), delta = rational + rounding, d = d2 > 0 ? sqrt(d2) : 0;
     const double error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
     hdi_parts part = {0, 0, 0, 0};
     if (delta > 0) {
@@ -21738,28 +21741,26 @@ static double hdi_metric_note(const hdi_metric *x, double d2, double rational, d
     return x->root * d;
 }
 
-/* Distances from source i of those solved for, by vertices. Where there is a column of g its own d^2
- * bounds the rational error, else the diagonals do, which is less sharp near the source. Between
+/* Distances from source i of those solved for to vertices [begin, end). Where there is a column of g its own
+ * d^2 bounds the rational error, else the diagonals do, which is less sharp near the source. Between
  * components distances without a time are infinite; a ledger would take these for answers that overflow. */
-static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
-                                hd_report *rep, hdi_ledger *ledger) {
+static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int32_t i, int32_t begin,
+                                   int32_t end, double *out, hd_report *rep, hdi_ledger *ledger) {
     const hd_laplacian *lap = x->h->lap;
     const double *u = hdi_metric_sum(x, i, x->q, 0), *g = x->bounded ? hdi_metric_sum(x, i, x->q, 1) : NULL;
     const hdi_column_parts *off = x->off + i * hdi_high32(x->in.count, 1) + x->q;
     const hdi_metric_end from = hdi_metric_source(x, s, off, u, g);
     const int32_t own = hdi_terms_component(lap, s);
     int32_t v;
-    for (v = 0; v < lap->n; v++) {
+    for (v = begin; v < end; v++) {
         const int32_t r = lap->row[v];
         const hdi_metric_end to = hdi_metric_row(x, r);
         const int apart = x->kind->power > 0 && (r < 0 || own < 0 || lap->component[r] != own);
-        const int same = !s->weight && v == s->one;
-        out[v] = same || !apart ? 0 : HUGE_VAL;
-        if (same || apart) continue;
-        out[v] = hdi_metric_note(x, from.f - (r < 0 ? 0 : 2 * u[r] - to.f),
-                                 hdi_metric_rational(x, &from, &to, g && r >= 0 ? g + r : NULL),
-                                 hdi_metric_rounding(x, &from, &to, s->weight || own >= 0 ? off : NULL),
-                                 rep, ledger);
+        out[v] = apart ? HUGE_VAL : 0;
+        if (!s->weight && v == s->one) out[v] = 0;
+        else if (!apart)
+            out[v] = hdi_metric_between(x, &from, &to, r < 0 ? 0 : u[r], g && r >= 0 ? g + r : NULL,
+                                        s->weight || own >= 0 ? off : NULL, rep, ledger);
     }
 }
 
@@ -21782,7 +21783,7 @@ static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t
                                 hd_report *rep) {
     hdi_ledger ledger = hdi_metric_ledger(x);
     if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, *s, 0, x->modes->lap->n, out, &ledger, rep);
-    else hdi_metric_differences(x, s, i, out, rep, &ledger);
+    else hdi_metric_differences(x, s, i, 0, x->h->heat->source->n, out, rep, &ledger);
     hdi_ledger_close(&ledger, rep);
 }
 
@@ -22045,14 +22046,13 @@ static int hdi_pairs_columns(const hdi_pairs *to) {
 }
 
 /* Pairs by a metric, for more vertices than columns fit, or from eigenpairs. By a metric each run of the same
- * first vertex has a column, and errors are those of all vertices from these. */
+ * first vertex has a column. */
 static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *x) {
     const hdi_pairs *to = (const hdi_pairs *)of;
     hdi_heat_call *h = of->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     double *d = HDI_TAKE(&s, double, h->heat->source->n), *out = to->d + to->n * h->now;
-    const hdi_parts none = {0, 0, 0, 0};
-    hdi_ledger ledger = hdi_metric_ledger(x), all = ledger;
+    hdi_ledger ledger = hdi_metric_ledger(x);
     int32_t from = -1;
     int64_t q;
     for (q = 0; q < to->n && h->e->status >= 0; q++) {
@@ -22060,16 +22060,12 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
         const int32_t j = to->j[q];
         out[q] = 0;
         if (source.one == j) continue;
-        if (HDI_HAS_MODES && x->modes)
-            hdi_mode_sum_run(x->modes, source, j, j + 1, d, &ledger, h->rep);
-        else if (source.one != from && hdi_metric_solve(x, &source, 1) >= 0)
-            hdi_metric_differences(x, &source, 0, d, h->rep, &all);
+        if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, source, j, j + 1, d, &ledger, h->rep);
+        else if (source.one == from || hdi_metric_solve(x, &source, 1) >= 0)
+            hdi_metric_differences(x, &source, 0, j, j + 1, d, h->rep, &ledger);
         from = source.one;
         out[q] = d[j];
-        if (!x->modes && hdi_finite(out[q])) hdi_ledger_note(&ledger, out[q], none);
     }
-    if (!x->modes) ledger.off = all.off;
-    if (!x->modes) ledger.relative = all.relative;
     if (h->e->status >= 0) hdi_ledger_close(&ledger, h->rep);
     (void)hdi_scope_end(&s);
 }

@@ -319,9 +319,6 @@ static const word SOLVERS[] = {
 static const word PRECONDS[] = {
     { "none", HD_PRECOND_NONE }, { "jacobi", HD_PRECOND_JACOBI }, { "ssor", HD_PRECOND_SSOR },
     { "ildl", HD_PRECOND_ILDL }, { "mildl", HD_PRECOND_MILDL }, { NULL, 0 } };
-static const word DEFINITIONS[] = {
-    { "classical", HD_DISTANCE_CLASSICAL }, { "weighted", HD_DISTANCE_WEIGHTED },
-    { "commute", HD_DISTANCE_COMMUTE }, { "biharmonic", HD_DISTANCE_BIHARMONIC }, { NULL, 0 } };
 static const word KERNELS[] = { { "operator", HD_KERNEL_OPERATOR }, { "symmetric", HD_KERNEL_SYMMETRIC },
                                 { NULL, 0 } };
 
@@ -342,6 +339,14 @@ static const word *find_word(const word *words, const char *name)
         if (strcmp(words->name, name) == 0) return words;
     return NULL;
 }
+
+/* Definitions of distances, and what the tool has to know of each. */
+static const word DEFINITIONS[] = {
+    { "classical", HD_DISTANCE_CLASSICAL }, { "weighted", HD_DISTANCE_WEIGHTED },
+    { "commute", HD_DISTANCE_COMMUTE }, { "biharmonic", HD_DISTANCE_BIHARMONIC }, { NULL, 0 } };
+static const struct { hd_query query; int timeless; } OF_DEFINITION[] = {     /* in the same order */
+    { HD_QUERY_DISTANCE, 0 }, { HD_QUERY_DISTANCE_WEIGHTED, 0 },
+    { HD_QUERY_DISTANCE_COMMUTE, 1 }, { HD_QUERY_DISTANCE_BIHARMONIC, 1 } };
 
 enum { WORDS_TEXT = 120 };
 
@@ -1248,23 +1253,39 @@ static int check_method(const options *o)
     return DONE;
 }
 
-/* Distances without a time. */
-static int is_timeless(const options *o)
+/* The place of the definition asked for in both tables. */
+static int definition_row(const options *o)
 {
-    return o->definition == HD_DISTANCE_COMMUTE || o->definition == HD_DISTANCE_BIHARMONIC;
+    int q = 0;
+    while (DEFINITIONS[q].value != o->definition) q++;
+    return q;
+}
+
+static int is_timeless(const options *o) { return OF_DEFINITION[definition_row(o)].timeless; }
+
+/* The definitions with a time, or without. */
+static const char *list_definitions(int timeless, char *text)
+{
+    word words[sizeof DEFINITIONS / sizeof *DEFINITIONS];
+    int q, n = 0;
+    for (q = 0; DEFINITIONS[q].name; q++)
+        if (OF_DEFINITION[q].timeless == timeless) words[n++] = DEFINITIONS[q];
+    words[n] = DEFINITIONS[q];
+    return list_words(words, text);
 }
 
 static int check_times(const options *o)
 {
     const char *name = command_name(o->command);
+    char words[WORDS_TEXT];
     int i;
     if (o->filter && (o->times || is_timeless(o)))
-        return fail(USAGE, "--filter takes no %s beside it: the filter says it all",
-                    o->times ? "--t" : "--definition commute or biharmonic");
+        return fail(USAGE, "--filter takes no %s%s beside it: the filter says it all",
+                    o->times ? "--t" : "--definition ", o->times ? "" : list_definitions(1, words));
     if (o->filter) return DONE;
     if (is_timeless(o)) {
         if (o->times)
-            return fail(USAGE, "--t takes --definition classical or weighted: %s has no time",
+            return fail(USAGE, "--t takes --definition %s: %s has no time", list_definitions(0, words),
                         word_of(DEFINITIONS, o->definition));
         return DONE;
     }
@@ -1285,16 +1306,18 @@ static int check_times(const options *o)
 static int check_definition(const options *o)
 {
     const char *name = word_of(DEFINITIONS, o->definition);
+    char words[WORDS_TEXT];
     if (!is_timeless(o)) return DONE;
+    list_definitions(0, words);
     if (o->degree || o->poles)
-        return fail(USAGE, "%s takes --definition classical or weighted: %s has poles of its own",
-                    o->degree ? "--degree" : "--poles", name);
+        return fail(USAGE, "%s takes --definition %s: %s has poles of its own",
+                    o->degree ? "--degree" : "--poles", words, name);
     if (o->method != HD_METHOD_AUTO && o->method != HD_METHOD_DIRECT)
         return fail(USAGE, "--method takes auto or direct here, not %s: %s is read off the factors",
                     word_of(METHODS, o->method), name);
     if (o->solver || o->precond)
-        return fail(USAGE, "%s takes --definition classical or weighted: %s does not iterate",
-                    o->solver ? "--solver" : "--precond", name);
+        return fail(USAGE, "%s takes --definition %s: %s does not iterate",
+                    o->solver ? "--solver" : "--precond", words, name);
     return DONE;
 }
 
@@ -2540,17 +2563,6 @@ static int by_trace(const options *o)
     return o->normalise || (o->command == CMD_HKS && o->filter_kind == HD_FILTER_WAVE);
 }
 
-static hd_query query_of_distance(hd_distance_kind kind)
-{
-    switch (kind) {
-    case HD_DISTANCE_CLASSICAL: return HD_QUERY_DISTANCE;
-    case HD_DISTANCE_WEIGHTED: return HD_QUERY_DISTANCE_WEIGHTED;
-    case HD_DISTANCE_COMMUTE: return HD_QUERY_DISTANCE_COMMUTE;
-    case HD_DISTANCE_BIHARMONIC: return HD_QUERY_DISTANCE_BIHARMONIC;
-    }
-    return HD_QUERY_DISTANCE;
-}
-
 static hd_query query_of(const run *r, int32_t *k)
 {
     const options *o = r->o;
@@ -2566,7 +2578,7 @@ static hd_query query_of(const run *r, int32_t *k)
     if (o->command == CMD_SAMPLE) *k = (int32_t)o->count + (r->places ? (int32_t)r->n_inputs : 0);
     if (o->command == CMD_PAIRS) *k = pairs_vertices(r);
     if (o->command == CMD_PAIRS && !is_timeless(o)) return HD_QUERY_PAIRS;
-    return query_of_distance((hd_distance_kind)o->definition);
+    return OF_DEFINITION[definition_row(o)].query;
 }
 
 /* Each sample waits for those before it. Columns that are solved one by one take this many times as long as
