@@ -548,6 +548,23 @@ static void diag_pairs_parts(void) {
     CHECK(heat_pairs(heat, HD_DISTANCE_CLASSICAL, t, 0, NULL, NULL, NULL, NULL) == HD_OK);
 }
 
+/* Without a time the report of a pair is for that pair; that of all vertices is worse by the nearest of these. */
+static void diag_pairs_errors(void) {
+    const hd_laplacian *lap = kit_pair("torus/40/16 fem");
+    hd_heat *heat = kit_heat(lap, "");
+    double *d = KIT_NEW(double, lap->n), one;
+    const int32_t from = 0;
+    int32_t to = 0, v, kind;
+    hd_report all, rep;
+    for (kind = HD_DISTANCE_COMMUTE; kind <= HD_DISTANCE_BIHARMONIC; kind++) {
+        CHECK(heat_distance(heat, (hd_distance_kind)kind, 0, NULL, 1, &from, d, 0, &all) >= 0);
+        for (v = 0; v < lap->n; v++) to = d[v] > d[to] ? v : to;
+        CHECK(heat_pairs(heat, (hd_distance_kind)kind, 0, 1, &from, &to, &one, &rep) >= 0 && one == d[to]);
+        CHECK_MSG(rep.error_relative > 0 && rep.error_relative < 0.8 * all.error_relative && rep.error_bound <= all.error_bound,
+                  "kind %d: %g of a pair, %g of all", (int)kind, rep.error_relative, all.error_relative);
+    }
+}
+
 /* Which stages of work were told of; stops at the tenth of them, or of solves. */
 typedef struct diag_stages { int inverts, solves; } diag_stages;
 
@@ -920,6 +937,7 @@ static void test_diagonal(void) {
     diag_lost();
     diag_metric_laws();
     diag_pairs_parts();
+    diag_pairs_errors();
     diag_pairs_method();
     diag_samples();
     diag_samples_lost();
