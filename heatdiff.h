@@ -522,14 +522,16 @@ typedef struct hd_sources {
     int32_t end_zero;
 } hd_sources;
 
-/* Squared distances d^2. The last two sum over the eigenpairs (lambda_l, x_l) of (L, B) with lambda_l > 0,
- * and have no time. */
+/* Squared distances d^2, and the unit of d. Those that are sums over the eigenpairs (lambda_l, x_l) of (L, B)
+ * with lambda_l > 0 have no time. */
 typedef enum hd_distance_kind {
-    HD_DISTANCE_CLASSICAL = 0,  /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic */
-    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d tends to |b_i - b_j|/sqrt(area) */
+    /* k_2t(i,i) - 2 k_2t(i,j) + k_2t(j,j) (Coifman, Lafon 2006); intrinsic; 1/length */
+    HD_DISTANCE_CLASSICAL = 0,
+    /* (e_i - e_j)' B K_2t (e_i - e_j), eq. (6) of the paper; at large t d tends to |b_i - b_j|/sqrt(area);
+     * length */
     HD_DISTANCE_WEIGHTED,
-    HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance */
-    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010) */
+    HD_DISTANCE_COMMUTE,        /* sum_l (x_l(i) - x_l(j))^2 / lambda_l: the effective resistance; no unit */
+    HD_DISTANCE_BIHARMONIC      /* the same with lambda_l^2 (Lipman, Rustamov, Funkhouser 2010); length */
 } hd_distance_kind;
 
 /* How a part of an error bound is known. For several answers the report holds the largest. */
@@ -968,8 +970,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
 
 /* Common to all queries of a plan
  * t      [n_times] >= 0, in any order, unit length^2; > 0 for diagonals, samples and distances to all
- *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Commute and biharmonic: n_times is
- *        0 or 1, and t is not read
+ *        vertices. With a filter: n_times = 0, or 1 and the t of its set. Distances without a time: n_times
+ *        is 0 or 1, and t is not read
  * fields F, G [n k]. Answers U, D have n rows, and the column q n_times + m for field or source q at time m
  * pairs  i, j [n_pairs]. Answers are [n_pairs n_times], time by time
  * Errors HD_ERR_NOT_CONVERGED, HD_ERR_BREAKDOWN (vertex: where the answer overflows), HD_ERR_NOT_POSITIVE;
@@ -980,7 +982,7 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
  *                 more than 1e100
  *        method:  HD_ERR_ARGUMENT. Diagonals, samples and distances to all need auto, direct or local;
- *                 commute, biharmonic, own pole sets auto or direct
+ *                 distances without a time, own pole sets auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
  * methods auto and direct take the few eigenpairs left.
  * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
@@ -1058,9 +1060,9 @@ HEATDIFF_API hd_status hd_times_auto(const hd_laplacian *lap, int32_t n_times, d
  * source divided by the sum of its weights, which must be positive; F is k_2t, B K_2t and so on by the kind,
  * or the filter itself. Vertices without a row have a zero row in F. d is zero only at a vertex that is the
  * source itself.
- * D      unit: classical 1/length, weighted length, commute none, biharmonic length. Commute and biharmonic
- *        are infinite (HUGE_VAL) between components, to vertices without a row, and from sources that reach
- *        into several components or such vertices. Where heat is lost they are those of L^-1
+ * D      Distances without a time are infinite (HUGE_VAL) between components, to vertices without a row, and
+ *        from sources that reach into several components or such vertices. Where heat is lost they are
+ *        those of L^-1
  * report bounds are for d itself. By default poles of degree 14, or the few eigenpairs left at large t, take
  *        over where they need it and the byte limit allows. Above 170,000 vertices bounds may exceed 1e-6
  * Cost   one diagonal at 2t, twice as long if weighted with a full B, and one column for each source.
@@ -1070,9 +1072,9 @@ HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, in
                                         const double *t, const hd_sources *sources, double *D,
                                         size_t ldd, hd_report *report, hd_error *err);
 
-/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. Commute,
- * biharmonic, filters, and lists whose columns take more than half a GiB, use entries and the diagonal at 2t:
- * sort pairs by i then.
+/* Distances of pairs: |K_t B^-1 (e_i - e_j)|_B, without cancellation, or from eigenpairs as above. Those
+ * without a time, filters, and lists whose columns take more than half a GiB, use entries and the diagonal at
+ * 2t: sort pairs by i then.
  * Cost   one column for each distinct vertex; from entries one for each distinct i, and a diagonal */
 HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
                                               const double *t, int64_t n_pairs, const int32_t *i,
