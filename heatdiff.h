@@ -12795,7 +12795,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
  * How an error_bound comes about, from the end: hdi_ledger_close divides the parts by the largest value;
  * hdi_heat_judge makes those of values from those of a lane, by hdi_lane_bound; hdi_heat_ledger says how each
  * is known; and a lane has them in the norm of B from its engine. With poles these are hdi_lane_residual and
- * hdi_rational_bound; with krylov all is said at hdi_krylov_judge, with Lanczos at hdi_lanczos_run.
+ * hdi_rational_bound; of method krylov all is said at hdi_krylov_judge, of iterations by Lanczos at
+ * hdi_lanczos_run.
  * hdi_conserve_off adds what means are off by; rhs_off and f_off of hdi_heat_load are what the right-hand
  * side is. A residual counts as in hdi_residual_seen, with the rounding of hdi_noise_weights, in the norm of
  * D^-1; hdi_ratio_root leads from there to that of B^-1. */
@@ -14841,14 +14842,15 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
 }
 
 /* Judges the answer in lane->u of right-hand side r, a time t after z->from. y: its coefficients. In the norm
- * of B, absolute, and with gain_j of hdi_ritz_gain, the parts are
- *   solver    |f| beta gain_(m-1), for what the basis leaves out
+ * of B, absolute, with |f| = z->f_norm of the field without its constants, the parts are
+ *   solver    |f| beta gain_(m-1), for what the basis leaves out; gain: see hdi_ritz_gain
  *   rounding  |f| sum_j gain_j (1/sqrt(b_ratio) (2 seen + 1/8, and 1 with a full B) noise_j + 4 eps |T_j|)
- *             + gain_0 rhs_off + m eps |y|_1, and those of means and of f: hdi_conserve_off, f_off
+ *             + gain_0 rhs_off + m eps |y|_1, then hdi_conserve_off for the means, and f_off
  *   local     on a part of the mesh, hdi_rim_bound
- * There is no rational one, and z->before adds to these after the first window. rhs_off is zero for one
- * vertex, f_off but for k_t with a full B. hdi_krylov_miss stops by the same norm; in values a bound is
- * larger by |u|_B/(sqrt(b_ratio min B_vv) max |u_v|). */
+ * noise_j is the most that rounding can do to solve j, and seen the largest residual that was found over it.
+ * rhs_off is zero if the source is one vertex, and f_off is unless k_t with a full B is asked for. There is
+ * no rational part. After the first window z->before is added. hdi_krylov_miss stops the basis by the same
+ * norm; in values a bound is larger by |u|_B/(sqrt(b_ratio min B_vv) max |u_v|). */
 static void hdi_krylov_judge(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
                               hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
