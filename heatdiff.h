@@ -14396,21 +14396,6 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     }
 }
 
-/* Second sweep: u += f0_norm sum y_j v_j. */
-static hd_status hdi_lanczos_second(const hdi_lanczos_task *task, double f0_norm, hdi_lane *lane,
-                                    const hdi_watch *watch, hd_error *e) {
-    const int32_t n = task->lap->n_active, m = lane->lanczos.m;
-    int32_t j;
-    hdi_lanczos_start(lane, n, f0_norm);
-    for (j = 0; j < m; j++) {
-        hdi_axpy(f0_norm * lane->lanczos.y[j], lane->lanczos.v, lane->u, n);
-        if (j % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * j / m, e) < 0) return e->status;
-        if (j + 1 < m && hdi_lanczos_step(task, lane, e) < 0) return e->status;
-    }
-    lane->lanczos.m = m;
-    return HD_OK;
-}
-
 /* K_t f by Lanczos, which the constants of each component do not enter. */
 static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, const hdi_watch *watch,
                                  hd_error *e) {
@@ -14419,7 +14404,7 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     const double fixed = hdi_lane_means_norm2(lane, lap);
     hd_status status = HD_OK;
     double f0_norm;
-    int32_t i;
+    int32_t i, m;
     hdi_lane_clear_off(lane);
     lane->rounding = HD_EVIDENCE_ESTIMATED;
     hdi_lane_deflate(lane, lap);                 /* f0 = f - constants, rhs0 = B f0 */
@@ -14428,8 +14413,13 @@ static hd_status hdi_lanczos_run(const hdi_lanczos_task *task, hdi_lane *lane, c
     lane->u_norm = sqrt(fixed);
     if (f0_norm > DBL_EPSILON * lane->f_norm) {
         status = hdi_lanczos_first(task, f0_norm, fixed, lane, watch, e);
-        if (status >= 0 && hdi_lanczos_second(task, f0_norm, lane, watch, e) < 0) return e->status;
-        lane->steps = lane->lanczos.m;
+        lane->steps = m = lane->lanczos.m;
+        if (status >= 0) hdi_lanczos_start(lane, n, f0_norm);
+        for (i = 0; i < m && status >= 0; i++) {         /* u += f0_norm sum y_j v_j */
+            hdi_axpy(f0_norm * lane->lanczos.y[i], lane->lanczos.v, lane->u, n);
+            if ((i % 16 == 0 && hdi_watch_look(watch, 0.5 + 0.5 * i / m, e) < 0) ||
+                (i + 1 < m && hdi_lanczos_step(task, lane, e) < 0)) return e->status;
+        }
     }
     if (status >= 0) hdi_conserve(lap, lane, 1);
     hdi_lane_rounding(lane, hdi_conserve_off(lap, lane, task->t * task->drift, 1) + lane->f_off);
@@ -14680,37 +14670,25 @@ static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, in
 
 enum { HDI_KRYLOV_BLOCK = 64 };  /* rows whose sums stay in the first cache */
 
-/* Rows [begin, end) of all sums, side by side: s [rows][8]. */
-static void hdi_krylov_sum_block(const hdi_krylov *z, int64_t begin, int64_t end, double *HDI_RESTRICT s) {
-    int32_t j, p;
-    int64_t i;
-    for (j = 0; j < z->steps; j++) {
-        const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
-        if (z->wide > 1) {
-            double y[HDI_WIDE];
-            for (p = 0; p < HDI_WIDE; p++) y[p] = p < z->n_sums ? z->y[p][j] : 0;
-            for (i = 0; i < end - begin; i++)
-                for (p = 0; p < HDI_WIDE; p++)
-                    s[HDI_WIDE * i + p] += y[p] * v[HDI_WIDE * i + p];
-        } else {
-            for (p = 0; p < z->n_sums; p++)
-                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += z->y[p][j] * v[i];
-        }
-    }
-}
-
 /* u = the constants and the part of the basis, for each answer. */
 static void hdi_krylov_sum_task(void *arg, int64_t first, int64_t last) {
     const hdi_krylov *z = (const hdi_krylov *)arg;
     const int32_t *component = z->m->lap->component;
     const int64_t row = z->wide > 1 ? HDI_WIDE : 1, column = z->wide > 1 ? 1 : HDI_KRYLOV_BLOCK;
     int64_t begin, i;
-    int32_t p;
+    int32_t j, p;
     for (begin = first; begin < last; begin += HDI_KRYLOV_BLOCK) {
         const int64_t end = begin + HDI_KRYLOV_BLOCK < last ? begin + HDI_KRYLOV_BLOCK : last;
-        double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK];
+        double s[(int32_t)HDI_WIDE * HDI_KRYLOV_BLOCK], y[HDI_WIDE];     /* all sums, side by side */
         memset(s, 0, sizeof s);
-        hdi_krylov_sum_block(z, begin, end, s);
+        for (j = 0; j < z->steps; j++) {
+            const double *HDI_RESTRICT v = z->v[j] + z->wide * begin;
+            for (p = 0; p < HDI_WIDE; p++) y[p] = p < z->n_sums ? z->y[p][j] : 0;
+            for (i = 0; i < end - begin && z->wide > 1; i++)
+                for (p = 0; p < HDI_WIDE; p++) s[HDI_WIDE * i + p] += y[p] * v[HDI_WIDE * i + p];
+            for (p = 0; p < z->n_sums && z->wide == 1; p++)
+                for (i = 0; i < end - begin; i++) s[HDI_KRYLOV_BLOCK * p + i] += y[p] * v[i];
+        }
         for (p = 0; p < z->n_sums; p++)
             for (i = begin; i < end && z->u[p]; i++)
                 z->u[p][i] = z->means[p][component[i]] + s[row * (i - begin) + column * p];
@@ -15799,18 +15777,6 @@ static double hdi_spec_orthonormal(const hdi_spec *s, double *x, double *total, 
     return off;
 }
 
-/* w less its part in the last two blocks of the basis, from which alone it should have one. The coefficients
- * are the last block of T. */
-static void hdi_spec_local(hdi_spec *s, double *w) {
-    const int32_t last = s->n_blocks - 1, first = hdi_high32(last - 1, 0);
-    const double *h = s->h + 64 * (last - first);
-    double *own = s->own + 64 * last;
-    int q, k;
-    hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, NULL);
-    for (q = 0; q < HDI_WIDE; q++)
-        for (k = 0; k < HDI_WIDE; k++) own[8 * q + k] = 0.5 * (h[8 * q + k] + h[8 * k + q]);
-}
-
 /* The newest block of the basis, orthogonal to those before it and to the blocks nearby, with orthonormal
  * columns, all in B. couple receives its triangular factor, bw B times it; a column with nothing new is zero.
  * Parts in the last two blocks go first, then what rounding left in all vectors; again for columns that
@@ -15826,7 +15792,13 @@ static int32_t hdi_spec_append(hdi_spec *s) {
         couple[9 * q] = 1;
         norm[q] = norm[q] > 0 ? sqrt(norm[q]) : 0;
     }
-    if (s->n_blocks > 0) hdi_spec_local(s, w);
+    if (s->n_blocks > 0) {                       /* the last two blocks; its last block of T */
+        const int32_t last = s->n_blocks - 1, first = hdi_high32(last - 1, 0);
+        const double *h = s->h + 64 * (last - first);
+        double *own = s->own + 64 * last;
+        hdi_spec_project(s, s->list + s->n_near + first, last - first + 1, w, NULL);
+        for (q = 0; q < 64; q++) own[q] = 0.5 * (h[q] + h[8 * (q % 8) + q / 8]);
+    }
     for (pass = 0; pass < 2 || (off > 0.1 && pass < HDI_SPEC_PASSES); pass++) {
         hdi_spec_project(s, s->list, off == HUGE_VAL ? s->n_near + s->n_blocks : 0, w, removed);
         off = hdi_spec_orthonormal(s, w, couple, norm, removed, pass > 0 ? &s->lost : NULL);
@@ -15899,10 +15871,13 @@ static hd_status hdi_spec_ritz(hdi_spec *s, int full, hd_error *e) {
     return HD_OK;
 }
 
-/* The blocks that a run at the shift could find again, those beyond the edge and those nearly as near; then
- * those of the basis. */
-static void hdi_spec_nearby(hdi_spec *s) {
-    int32_t i;
+/* Blocks until all `wanted` eigenvalues between the edge and the shift are there, at the edge itself so many
+ * above it, or until the basis is full. */
+static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
+    const double share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
+    int32_t look = wanted / HDI_WIDE + 4, more;
+    int64_t i;
+    /* the blocks that it could find again, those beyond the edge and those nearly as near; then its own */
     memset(s->list, 0, (size_t)s->n_lock * sizeof *s->list);
     for (i = 0; i < s->found; i++) {
         const double x = s->pair[i].value;
@@ -15911,16 +15886,7 @@ static void hdi_spec_nearby(hdi_spec *s) {
     }
     for (i = s->n_near = 0; i < s->n_lock; i++)
         if (s->list[i]) s->list[s->n_near++] = s->list[i];
-    for (i = 0; i <= s->room; i++) s->list[s->n_near + i] = s->basis + 8 * (int64_t)i * s->n;
-}
-
-/* Blocks until all `wanted` eigenvalues between the edge and the shift are there, at the edge itself so many
- * above it, or until the basis is full. */
-static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
-    const double share = hdi_min(0.99, s->found / (1.0 + hdi_min(s->count, s->n)));
-    int32_t look = wanted / HDI_WIDE + 4, more;
-    int64_t i;
-    hdi_spec_nearby(s);
+    for (i = 0; i <= s->room; i++) s->list[s->n_near + i] = s->basis + 8 * i * s->n;
     s->n_blocks = 0;
     s->lost = 0;
     s->out->n_runs++;
@@ -16377,18 +16343,6 @@ static hd_status hdi_spec_run(hdi_elim *m, int32_t count, double below, double t
 
 #define HDI_TOL_SPECTRUM 1e-10
 
-static hd_status hdi_spectrum_check(const hd_laplacian *lap, const hd_spectrum_opts *o, hd_context *ctx,
-                                    hd_error *e) {
-    hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound", e);
-    hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, e);
-    hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
-                     o->below, e);
-    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", e);
-    hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", e);
-    if (e->status >= 0 && o->ordering == HD_ORDERING_OWN) (void)hdi_order_check(o->perm, lap->n, ctx, e);
-    return e->status;
-}
-
 HEATDIFF_API void hd_spectrum_free(hd_spectrum *s) {
     hd_context *ctx;
     if (!s) return;
@@ -16410,7 +16364,16 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
                        "spectrum options: not cleared before use", err) < 0) return c.e->status;
     if (!out || !lap || !o) return hdi_missing(c.e);
     if (!HDI_HAS_SPECTRUM) return HDI_LEFT_OUT(c.e, SPECTRUM, "eigenpairs");
-    if (hdi_spectrum_check(lap, o, c.ctx, c.e) < 0) return c.e->status;
+    hdi_refuse(o->count < 0 || (o->count == 0 && o->below == 0), "spectrum: neither a count nor a bound",
+               c.e);
+    hdi_refuse_value(o->count > lap->n_active, "spectrum: more pairs than rows", o->count, c.e);
+    hdi_refuse_value(!hdi_finite(o->below) || o->below < 0, "spectrum: below is negative or not finite",
+                     o->below, c.e);
+    hdi_refuse(!hdi_finite(o->tol) || o->tol < 0 || o->tol >= 1, "spectrum: tol is not in [0, 1)", c.e);
+    hdi_refuse_ordering(o->ordering, o->perm, "spectrum: unknown ordering", c.e);
+    if (c.e->status >= 0 && o->ordering == HD_ORDERING_OWN)
+        (void)hdi_order_check(o->perm, lap->n, c.ctx, c.e);
+    if (c.e->status < 0) return c.e->status;
     s = (hd_spectrum *)hdi_alloc_zero(c.ctx, 1, sizeof *s, c.e);
     if (!s) return c.e->status;
     s->lap = lap;
