@@ -981,8 +981,8 @@ HEATDIFF_API hd_status hd_heat_set_rational(hd_heat *heat, int32_t count, const 
  *        sources: HD_ERR_INDEX, HD_ERR_NOT_FINITE, HD_ERR_ARGUMENT (column: which source, row: which of its
  *                 points, vertex): not as hd_sources asks, or weights or lengths sum to less than 1e-100 or
  *                 more than 1e100
- *        method:  HD_ERR_ARGUMENT. Diagonals, samples and distances to all need auto, direct or local;
- *                 distances without a time, own pole sets auto or direct
+ *        method:  HD_ERR_ARGUMENT. Diagonals, samples, distances to all and pairs by filters need auto,
+ *                 direct or local; distances without a time auto or direct
  * Where all heat flows out, answers fall like exp(-t lambda_1), and the error of poles does not: at large t
  * methods auto and direct take the few eigenpairs left.
  * Cost   of fields and columns, direct: one factorisation of all poles for each new t, one sweep through the
@@ -14952,7 +14952,6 @@ typedef struct hdi_distance_row {
     int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
-    int32_t squares;             /* 1: d^2 = f_ss - 2 f_sv + f_vv; eigenpairs and columns serve no others */
     int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
     /* The default begins with the highest degree: that of 9 would do only up to sqrt(t) = 0.8 h, as seen on
      * meshes of 1K to 50K vertices. */
@@ -14961,10 +14960,10 @@ typedef struct hdi_distance_row {
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 1, 1, 0},
-    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 1, 0, 0, 3.5e-7},
-    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 1, 0, 0, 0},
-    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 1, 0, 0, 0}
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 1, 0},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 0, 3.5e-7},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
 };
 enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
@@ -16714,7 +16713,7 @@ static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd
         hdi_refuse_value(!hdi_finite(a->t[q]) || a->t[q] < 0, "spectrum: t is negative or not finite",
                          a->t[q], e);
     hdi_refuse(x->power && a->n_times > 1, "spectrum: this distance has no time", e);
-    hdi_refuse(a->distance && !(row && row->squares), "spectrum: unknown distance", e);
+    hdi_refuse(a->distance && !row, "spectrum: unknown distance", e);
     hdi_refuse(!a->distance && !x->mass && a->kind != HD_KERNEL_SYMMETRIC, "spectrum: unknown kernel", e);
     return e->status;
 }
@@ -20215,22 +20214,6 @@ static void hdi_diagonal_means(const hd_laplacian *lap, hdi_diagonal *d) {
 #define HDI_PROBE_SAFETY 4
 #define HDI_PROBE_OWN 100
 
-/* Does rounding show in the values alone? k_t(i,i) is at least the part that the constants have in it, and no
- * set that approximates exp gives less. (In K_t with a full B the parts of other eigenvectors, x(v) (B x)(v),
- * may be negative.) Returns the largest relative error that a smaller value proves. */
-static double hdi_below_constants(const hdi_heat_call *h, const hdi_diagonal *d) {
-    const hd_laplacian *lap = h->heat->elim.lap;
-    double most = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active && !d->full && d->set->a0 == 0; i++) {
-        const double part = d->set->kind == HD_POLES_OWN ? 0 : hdi_constant_part(lap, i);
-        const double least = hdi_by_mass(part, lap->mass[i], d->mass), value = d->value[i];
-        if (hdi_row_counts(h, i) && value < 0.999 * least)
-            most = hdi_max(most, hdi_quotient(least - value, fabs(value)));
-    }
-    return most;
-}
-
 /* Rounding of a diagonal by poles of the caller's own, relative to its size. seen: by the probes. A pole
  * beside the spectrum makes its matrix nearly singular, in a direction that the probed rows may miss. What is
  * added is an estimate by first-order perturbation of what rounding of the entries, (|theta| + t lambda) eps,
@@ -20352,11 +20335,20 @@ static double hdi_probe_entry(const hd_heat *heat, const hdi_probe *probe, int32
                           hdi_diagonal_size(d, i));
 }
 
-/* What rounding does to diagonal d, which is that of function q, relative to its size. */
+/* What rounding does to diagonal d, which is that of function q, relative to its size. It may show in the
+ * values alone: k_t(i,i) is at least the part that the constants have in it, and no set that approximates exp
+ * gives less. (In K_t with a full B the parts of other eigenvectors, x(v) (B x)(v), may be negative.) */
 static HDI_COLD double hdi_diagonal_seen(const hdi_heat_call *h, const hdi_inverses *x, int32_t q,
                                          const hdi_diagonal *d, const hdi_probe *probe) {
-    double rounding = hdi_below_constants(h, d);
-    int32_t r;
+    const hd_laplacian *lap = h->heat->elim.lap;
+    double rounding = 0;
+    int32_t i, r;
+    for (i = 0; i < lap->n_active && !d->full && d->set->a0 == 0; i++) {
+        const double part = d->set->kind == HD_POLES_OWN ? 0 : hdi_constant_part(lap, i);
+        const double least = hdi_by_mass(part, lap->mass[i], d->mass);
+        if (hdi_row_counts(h, i) && d->value[i] < 0.999 * least)
+            rounding = hdi_max(rounding, hdi_quotient(least - d->value[i], fabs(d->value[i])));
+    }
     for (r = 0; r < probe->k; r++)
         rounding = hdi_max(rounding, hdi_probe_entry(h->heat, probe, r, x, q, d));
     return d->set->kind == HD_POLES_OWN ? hdi_own_rounding(h, d, rounding) : rounding;
@@ -20385,12 +20377,6 @@ typedef struct hdi_diagonals {
     int32_t n_rows;              /* patches */
     const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
-
-/* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
-static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
-    if (!to->task.h->heat->source->B || (to->mass == 0 && !to->Z)) return HDI_WANT_DIAGONAL;
-    return to->mass > 1 ? HDI_WANT_FORMS : HDI_WANT_ENTRIES;
-}
 
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hdi_diagonal *d) {
@@ -20510,9 +20496,12 @@ static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_inverses own, *x = h->equal ? NULL : &own;
+    /* a full B needs entries beside the diagonal for that of K_t = k_t B */
+    const hdi_wanted wanted = !h->heat->source->B || (to->mass == 0 && !to->Z) ? HDI_WANT_DIAGONAL
+                              : to->mass > 1 ? HDI_WANT_FORMS : HDI_WANT_ENTRIES;
     h->relative = 1;
     *relative = 0;
-    if (x && hdi_inverses_take(x, h, t, count, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
+    if (x && hdi_inverses_take(x, h, t, count, wanted, HDI_SHARED_TOL, &s) >= 0)
         (void)hdi_inverses_run(h, x, &s);
     if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 0, one, relative);
     if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 1, one, relative);
@@ -20728,47 +20717,50 @@ typedef struct hdi_patches {
     const char *reason;
 } hdi_patches;
 
-/* Orders the rows of a piece breadth-first from the first of them or the last, without leaving the piece. */
-static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
-    const hd_csr *L = &x->to->task.h->heat->source->L;
-    int32_t i, head = 0, tail = 0;
-    int64_t p;
-    for (i = 0; i < n; i++) x->mark[row[i]] = 1;
-    for (i = 0; i < n; i++) {
-        const int32_t from = row[last ? n - 1 - i : i];
-        if (!x->mark[from]) continue;
-        x->mark[from] = 0;
-        for (x->queue[tail++] = from; head < tail; head++) {
-            for (p = L->row_ptr[x->queue[head]]; p < L->row_ptr[x->queue[head] + 1]; p++) {
-                if (!x->mark[L->col[p]]) continue;
-                x->mark[L->col[p]] = 0;
-                x->queue[tail++] = L->col[p];
-            }
-        }
-    }
-    memcpy(row, x->queue, (size_t)n * sizeof *row);
+/* The mean length of edges at rows from begin to end, or of the root of t where that is less. */
+static double hdi_patch_edge(const hdi_patches *x, int32_t begin, int32_t end) {
+    const double root = sqrt(x->t);
+    double sum = 0;
+    int32_t i;
+    for (i = begin; i < end; i++)
+        sum += hdi_min(hdi_local_edge(x->to->task.h->heat->source, x->row[i]), root);
+    return sum / (end - begin);
 }
 
-/* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second begins. */
+/* Cuts what is to be so many pieces in two, breadth-first from an end, which is the last row found from the
+ * first one. The part with shorter edges comes first. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
-    hdi_patch_walk(x, x->row + begin, end - begin, 0);
-    hdi_patch_walk(x, x->row + begin, end - begin, 1);
-    return begin + (int32_t)((int64_t)(end - begin) * (pieces / 2) / pieces);
+    const hd_csr *L = &x->to->task.h->heat->source->L;
+    const int32_t n = end - begin, middle = begin + (int32_t)((int64_t)n * (pieces / 2) / pieces);
+    int32_t *row = x->row + begin, *queue = x->queue, i, round, head, tail;
+    int64_t p;
+    for (round = 0; round < 2; round++) {
+        for (i = 0; i < n; i++) x->mark[row[i]] = 1;
+        for (i = head = tail = 0; i < n; i++) {
+            if (x->mark[row[i]]) queue[tail++] = row[i];
+            for (x->mark[row[i]] = 0; head < tail; head++)
+                for (p = L->row_ptr[queue[head]]; p < L->row_ptr[queue[head] + 1]; p++) {
+                    if (x->mark[L->col[p]]) queue[tail++] = L->col[p];
+                    x->mark[L->col[p]] = 0;
+                }
+        }
+        for (i = 0; i < n; i++) row[i] = queue[round ? i : n - 1 - i];
+    }
+    if (hdi_patch_edge(x, begin, middle) > hdi_patch_edge(x, middle, end))
+        for (i = 0; i < n; i++) row[i] = queue[n - 1 - i];
+    return middle;
 }
 
 /* Finds a piece with its margin; stops beyond `most` rows. */
 static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
-    const double root = sqrt(x->t), hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
-    double edge = 0;
+    const double hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
+    const double radius = hdi_local_radius(h->heat, hdi_patch_edge(x, begin, end), sqrt(x->t), x->reach);
     int32_t i;
     hdi_local_clear(x->local);
-    for (i = begin; i < end; i++) {
-        edge += hdi_min(hdi_local_edge(h->heat->source, x->row[i]), root) / (end - begin);
+    for (i = begin; i < end; i++)
         if (hdi_local_add(x->local, x->row[i], h->e) < 0) return h->e->status;
-    }
-    edge = HDI_PATCH_REACH * hdi_local_radius(h->heat, edge, root, x->reach);
-    return hdi_local_grow(x->local, edge, hops, most, h->e);
+    return hdi_local_grow(x->local, HDI_PATCH_REACH * radius, hops, most, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
@@ -21081,21 +21073,28 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
+/* Rows from begin to end, in pieces. Where edges are short patches need most: they come first, and a limit
+ * that is too small is soon found. A piece that exceeds it is halved; those next to it are small at once, and
+ * grow with the distance from it. */
 static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
+    const int32_t core = x->core;
     int32_t middle;
-    if (end - begin <= x->core) {
+    if (end - begin <= core) {
         if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0) return h->e->status;
         if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
-        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < (x->done > 0 ? 2 : 2 * HDI_PATCH_LEAST))
+            return h->e->status;
         hdi_error_clear(h->e);
         hdi_local_free(h->heat);
         x->local = hdi_local_open(h->heat, h->e);
         if (h->e->status < 0) return h->e->status;
+        x->core = (end - begin + 1) / 2;
     }
     middle = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
-    return hdi_patches_range(x, begin, middle) < 0 ? h->e->status : hdi_patches_range(x, middle, end);
+    if (hdi_patches_range(x, begin, middle) >= 0) (void)hdi_patches_range(x, middle, end);
+    x->core = x->core > core / 2 ? core : 2 * x->core;
+    return h->e->status;
 }
 
 /* Diagonals and traces by patches. */
@@ -21104,6 +21103,7 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     hdi_heat_call *h = to->task.h;
     const hd_laplacian *lap = h->heat->source;
     int32_t q, v;
+    memset(h->rep, 0, sizeof *h->rep);
     h->relative = 1;
     h->rep->reason = x->reason;
     (void)hdi_patches_range(x, 0, x->n);
@@ -21163,15 +21163,14 @@ HEATDIFF_API HDI_COLD hd_status hd_heat_diagonal(hd_heat *heat, hd_kernel kernel
 static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64_t n, const int32_t *i,
                                            const int32_t *j, double *values) {
     const hd_laplacian *lap = h->heat->source;
-    int may = n >= HDI_PATCH_LEAST && h->heat->n_sets < 2;
+    int may = HDI_HAS_DIAGONAL && n >= HDI_PATCH_LEAST && h->heat->n_sets < 2 && hdi_patches_can(h->heat);
     int32_t *rows, q, v;
     hdi_diagonals to;
     hdi_patches x;
     int64_t p;
-    if (!HDI_HAS_DIAGONAL || !hdi_patches_can(h->heat)) return 0;
     for (p = 0; p < n && may; p++) may = i[p] == j[p];
     for (q = 0; q < h->ask.n_times && may; q++) may = h->ask.t[q] > 0;
-    if (!may) return 0;
+    if (!HDI_HAS_DIAGONAL || !may) return 0;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     to.mass = mass;
@@ -21182,8 +21181,7 @@ static HDI_COLD int hdi_entries_by_patches(hdi_heat_call *h, int32_t mass, int64
     for (p = 0; p < n; p++) to.D[i[p]] = 1;
     for (v = 0; v < lap->n; v++)
         if (to.D[v] > 0 && lap->row[v] >= 0) rows[to.n_rows++] = lap->row[v];
-    if (to.n_rows < HDI_PATCH_LEAST) return 0;
-    if (!hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
+    if (to.n_rows < HDI_PATCH_LEAST || !hdi_patches_pay(&x, &to, 1)) return h->e->status < 0;
     (void)hdi_patches_run(&x);
     for (q = 0; q < h->ask.n_times && h->e->status >= 0; q++)
         for (p = 0; p < n; p++) values[q * n + p] = to.D[(size_t)q * to.ldd + (size_t)i[p]];
@@ -21235,6 +21233,11 @@ static int hdi_heat_filtered(const hd_heat *heat) {
     return heat->opts.rational && heat->opts.rational->t > 0;
 }
 
+/* What times the kernel of d^2 is at, over those of the query. A filter is that kernel itself. */
+static double hdi_distance_times(const hd_heat *heat, const hdi_distance_row *kind) {
+    return hdi_heat_filtered(heat) ? 1 : kind->time;
+}
+
 /* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with
  * f of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of
  * f is at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most
@@ -21253,7 +21256,7 @@ typedef struct hdi_metric {
     int bounded;                 /* rows has columns of g */
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
-    hd_report *local;            /* f is by patches, columns by balls: their errors; NULL: not so */
+    hd_report *local;            /* f is by patches, with errors f.g, columns by balls; NULL: not so */
     struct hdi_mode_sum *modes;  /* eigenpairs answer, and nothing above is there; NULL: not so */
     const int32_t *column;       /* [in.count] which time of the query each function is for */
     hd_report *one;              /* by times; NULL: all is for the report of the call */
@@ -21306,22 +21309,6 @@ static void hdi_metric_at(hdi_metric *x, int32_t q) {
     x->q = q;
 }
 
-/* Inverts for the functions, whose sets are there, and measures rounding. */
-static hd_status hdi_metric_invert(hdi_metric *x, hdi_scope *s) {
-    hdi_heat_call *h = x->h;
-    hdi_probe probe;
-    double weighted;
-    if (hdi_inverses_run(h, &x->in, s) < 0 || hdi_probe_run(h, &x->in, 0, &x->f, &probe, s) < 0)
-        return h->e->status;
-    for (x->q = x->in.count - 1; ; hdi_metric_at(x, x->q - 1)) {
-        x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
-        if (x->q == 0) break;
-    }
-    weighted = hdi_set_weighted(x->in.set);
-    x->bounded = weighted > 0 && hdi_finite(weighted) && hdi_finite(x->f.sure);
-    return HD_OK;
-}
-
 /* Makes a metric of `count` functions, which an inversion, L grounded or means have to fill. */
 static hd_status hdi_metric_take(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                  int32_t count, hdi_scope *s) {
@@ -21372,9 +21359,10 @@ static void hdi_report_unbound(hd_report *rep) {
 static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, const hdi_distance_row *kind,
                                              const char *reason, hd_report *local, hdi_scope *s) {
     const hd_laplacian *lap = h->heat->source;
-    const double t = kind->time * h->ask.t[h->now];
+    const double t = hdi_distance_times(h->heat, kind) * h->ask.t[h->now];
     hdi_diagonals to;
     hdi_heat_call d;
+    double most;
     int32_t i;
     memset(&to, 0, sizeof to);
     to.D = HDI_TAKE(s, double, lap->n);
@@ -21389,13 +21377,16 @@ static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, co
         (void)hdi_diagonals_by_patches(&to, reason);
     }
     if (hdi_heat_end(&d) < 0) return (*h->e = local->error).status;
+    for (i = 0, most = 0; i < lap->n; i++) most = hdi_max(most, fabs(to.D[i]));
     for (i = 0; i < lap->n_active; i++) {
         const double size = kind->mass > 0 ? hdi_row_size(lap, i, 0, 1, NULL) : 1;
-        x->f.value[i] = to.D[lap->vertex[i]];
-        x->f.g[i] = HUGE_VAL;
+        const double value = to.D[lap->vertex[i]];
+        const double off = hdi_finite(local->error_bound) ? local->error_bound * most : HUGE_VAL;
+        x->f.value[i] = value;               /* relative to one that vanishes errors are infinite */
+        x->f.g[i] = hdi_finite(local->error_relative)
+            ? hdi_min(off, local->error_relative * fabs(value)) : off;
         x->f.spread[i] = size * size;
     }
-    *x->rounding = local->error_relative;
     *h->rep = *local;
     hdi_report_unbound(h->rep);
     return h->e->status;
@@ -21406,12 +21397,14 @@ static HDI_COLD hd_status hdi_metric_patches(hdi_metric *x, hdi_heat_call *h, co
 static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind, int32_t group, int32_t q0,
                                  int32_t q1, hdi_metric *x, hdi_scope *s) {
     hd_heat *heat = h->heat;
+    hdi_probe probe;
+    double weighted;
     if (hdi_heat_analysed(heat, h->e) < 0 || hdi_metric_take(x, h, kind, hdi_high32(q1 - q0, 1), s) < 0)
         return h->e->status;
     h->lap = heat->elim.lap;
     hdi_inverse_tell(h);
-    if (kind->time > 0 && q1 == 0) {             /* d^2 of a filter is the sum of the filter itself */
-        h->t = (hdi_heat_filtered(heat) ? 1 : kind->time) * hdi_heat_scaled(heat, h->ask.t[h->now]);
+    if (kind->time > 0 && q1 == 0) {
+        h->t = hdi_distance_times(heat, kind) * hdi_heat_scaled(heat, h->ask.t[h->now]);
         x->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
     }
     if (kind->power > 0) {
@@ -21421,8 +21414,15 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
         *x->rounding = (double)h->lap->n_active * DBL_EPSILON;
     } else if (h->e->status >= 0) {
         if (hdi_inverses_take(&x->in, h, q1 > 0 ? h->times + q0 : NULL, hdi_high32(q1 - q0, 1),
-                              hdi_metric_wanted(heat, kind), HDI_SHARED_DISTANCE_TOL, s) >= 0)
-            (void)hdi_metric_invert(x, s);
+                              hdi_metric_wanted(heat, kind), HDI_SHARED_DISTANCE_TOL, s) < 0 ||
+            hdi_inverses_run(h, &x->in, s) < 0 || hdi_probe_run(h, &x->in, 0, &x->f, &probe, s) < 0)
+            return h->e->status;
+        for (x->q = x->in.count - 1; ; hdi_metric_at(x, x->q - 1)) {     /* measures rounding */
+            x->rounding[x->q] = hdi_diagonal_seen(h, &x->in, x->q, &x->f, &probe);
+            if (x->q == 0) break;
+        }
+        weighted = hdi_set_weighted(x->in.set);
+        x->bounded = weighted > 0 && hdi_finite(weighted) && hdi_finite(x->f.sure);
     }
     return h->e->status < 0 ? h->e->status : hdi_metric_room(x, group, s);
 }
@@ -21482,20 +21482,6 @@ static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
     return sum;
 }
 
-/* Makes the distance to v of the part that decays, and notes its bound. */
-static void hdi_mode_sum_note(const hdi_mode_sum *a, int32_t v, hdi_ledger *ledger, hd_report *rep) {
-    const double still = hdi_modes_constant(a, v);
-    double *d = a->sums.column + v;
-    hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : *d);
-    part.rounding += a->constant_off;
-    if (still > 0) {
-        *d = hdi_pythag(still, *d);
-        part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * *d;
-    }
-    rep->n_lost += *d < 10 * hdi_parts_sum(&part);
-    hdi_ledger_note(ledger, *d, part);
-}
-
 /* d from the source to vertices [begin, end), which are all or one; the account goes to the ledger. */
 static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, int32_t begin, int32_t end, double *d,
                              hdi_ledger *ledger, hd_report *rep) {
@@ -21506,8 +21492,18 @@ static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, int32_t begin, i
     if (begin > 0) hdi_spec_sum_task(&a->sums, begin, end);
     else hdi_parallel_ranges(a->sums.of->s.context, end, 1024, hdi_spec_sum_task, &a->sums);
     if (same >= 0) d[same] = 0;
-    for (v = begin; v < end; v++)
-        if (v != same) hdi_mode_sum_note(a, v, ledger, rep);
+    for (v = begin; v < end; v++) {              /* d is that of the part that decays */
+        const double still = v == same ? 0 : hdi_modes_constant(a, v);
+        hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : d[v]);
+        if (v == same) continue;
+        part.rounding += a->constant_off;
+        if (still > 0) {
+            d[v] = hdi_pythag(still, d[v]);
+            part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d[v];
+        }
+        rep->n_lost += d[v] < 10 * hdi_parts_sum(&part);
+        hdi_ledger_note(ledger, d[v], part);
+    }
 }
 
 /* ---- columns of a metric ---- */
@@ -21589,8 +21585,8 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
     double most = 0;
     hd_report rep;
     int32_t i;
-    if (hdi_distance_columns(x->h, x->kind, x->kind->time, 1, source, x->work, &rep) < 0)
-        return x->h->e->status;
+    if (hdi_distance_columns(x->h, x->kind, hdi_distance_times(x->h->heat, x->kind), 1, source, x->work,
+                             &rep) < 0) return x->h->e->status;
     for (i = 0; i < lap->n_active; i++) {
         x->rows.sum[i] = x->work[lap->vertex[i]];
         most = hdi_max(most, fabs(x->rows.sum[i]));
@@ -21624,9 +21620,9 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
     return HD_OK;
 }
 
-/* f, g and spread of an end of a distance, and what rounding of its diagonal is relative to. Of a vertex they
- * are those of the diagonals. Of several f and g are taken from their columns u and g, and off bounds the
- * error of f by rounding; spread is a bound, and so is g where its column is NULL. */
+/* f, g and spread of an end of a distance, and what rounding of its diagonal is relative to; off is a bound
+ * on the error of f besides. Of a vertex they are those of the diagonals. Of several f and g are taken from
+ * their columns u and g; spread is a bound, and so is g where its column is NULL. */
 typedef struct hdi_metric_end { double f, g, spread, size, off; } hdi_metric_end;
 
 /* That of row r; negative: there is none. */
@@ -21634,7 +21630,8 @@ static hdi_metric_end hdi_metric_row(const hdi_metric *x, int32_t r) {
     hdi_metric_end end = {0, 0, 0, 0, 0};
     if (r < 0) return end;
     end.f = x->f.value[r];
-    end.g = x->f.g[r];
+    end.g = x->local ? HUGE_VAL : x->f.g[r];
+    end.off = x->local ? x->f.g[r] : 0;
     end.spread = x->f.spread[r];
     end.size = hdi_diagonal_size(&x->f, r);
     return end;
@@ -21655,10 +21652,11 @@ static hdi_metric_end hdi_metric_source(const hdi_metric *x, const hdi_terms *s,
     if (!s->weight) return hdi_metric_row(x, x->h->lap->row[s->one]);
     for (q = 0; q < s->n; q++) {
         const int32_t r = x->h->lap->row[s->vertex[q]];
+        const hdi_metric_end at = hdi_metric_row(x, r);
         const double w = s->weight[q];
         if (r < 0) continue;
-        by_m += fabs(w) * sqrt(hdi_max(0, x->f.g[r]));
-        by_b += fabs(w) * sqrt(x->f.spread[r]);
+        by_m += fabs(w) * sqrt(hdi_max(0, at.g));
+        by_b += fabs(w) * sqrt(at.spread);
         size += fabs(w * u[r]);
         end.f += w * u[r];
         if (g) end.g += x->f.slack * (w * g[r]);
@@ -21684,7 +21682,7 @@ static double hdi_metric_rational(const hdi_metric *x, const hdi_metric_end *a, 
 static double hdi_metric_rounding(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                   const hdi_column_parts *off) {
     const double relative = x->rounding[x->q];
-    double sum = a->off + 4 * DBL_EPSILON * (fabs(a->f) + fabs(b->f));
+    double sum = a->off + b->off + 4 * DBL_EPSILON * (fabs(a->f) + fabs(b->f));
     if (!hdi_finite(relative)) return HUGE_VAL;
     if (off) sum += 2 * hdi_metric_off(sqrt(hdi_max(0, b->g)), sqrt(b->spread), off);
     return relative > 0 ? sum + relative * (a->size + b->size) : sum;
@@ -21838,7 +21836,7 @@ static void hdi_distance_task(hdi_distance_query *to, hdi_heat_call *h, int32_t 
     to->group = hdi_low32(k, HDI_LANES);
     to->highest = kind->highest;
     to->local = NULL;
-    if (!HDI_HAS_MODES || !kind->squares || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
+    if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
     to->task.serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
     to->task.depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
@@ -21849,27 +21847,32 @@ static HDI_COLD hd_status hdi_distance_answer(hdi_distance_query *to) {
     hdi_heat_call *h = to->task.h;
     hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;
-    const int may = to->kind->time > 0 && !heat->opts.rational && hdi_patches_can(heat);
+    const int may = to->kind->time > 0 && hdi_patches_can(heat);
     const hd_heat_opts opts = heat->opts;
+    const int32_t n_sets = heat->n_sets;
     hdi_diagonals diagonal;
     hdi_patches x;
-    const char *reason = asked ? "asked for" : HDI_PATCHES_PAY;
     memset(&diagonal, 0, sizeof diagonal);
     diagonal.task.h = h;
-    if (!may || (!asked && !hdi_patches_pay(&x, &diagonal, to->kind->time))) {
-        if (h->e->status < 0 || hdi_heat_sparing(h, &to->task) >= 0 || !may ||
-            !hdi_over_limit(heat->ctx, h->e)) return h->e->status;
+    heat->n_sets = hdi_low32(n_sets, 1);         /* the first counts */
+    if (may && asked) to->local = "asked for";
+    else if (may && hdi_patches_pay(&x, &diagonal, hdi_distance_times(heat, to->kind)))
+        to->local = HDI_PATCHES_PAY;
+    if (h->e->status >= 0 && !to->local && hdi_heat_sparing(h, &to->task) < 0 && may &&
+        hdi_over_limit(heat->ctx, h->e)) {
         hdi_error_clear(h->e);
         hdi_heat_free_factors(heat);
-        reason = HDI_PATCHES_FIT;
+        to->local = HDI_PATCHES_FIT;
     }
-    to->local = reason;
-    to->task.serves = 0;
-    to->task.together = NULL;
-    heat->opts.method = HD_METHOD_LOCAL;
-    heat->opts.tol = hdi_min(opts.tol, HDI_METRIC_TOL);
-    (void)hdi_task_run(&to->task);
+    if (h->e->status >= 0 && to->local) {
+        to->task.serves = 0;
+        to->task.together = NULL;
+        heat->opts.method = HD_METHOD_LOCAL;
+        heat->opts.tol = hdi_min(opts.tol, HDI_METRIC_TOL);
+        (void)hdi_task_run(&to->task);
+    }
     heat->opts = opts;
+    heat->n_sets = n_sets;
     return h->e->status;
 }
 
@@ -22049,8 +22052,8 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
 static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
-    if (!to->of.kind->squares || !(to->of.kind->time > 0) || hdi_heat_filtered(h->heat) ||
-        !hdi_pairs_columns(to)) return hdi_distance_by_poles(task);
+    if (!(to->of.kind->time > 0) || hdi_heat_filtered(h->heat) || !hdi_pairs_columns(to))
+        return hdi_distance_by_poles(task);
     if (h->e->status >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
     return h->e->status;
@@ -22107,9 +22110,8 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    if (kind->time > 0 && (pairs ? kind->squares && !hdi_heat_filtered(heat)
-                                 : !heat->opts.rational && hdi_patches_can(heat))) return HD_OK;
-    return hdi_direct_only(h);
+    return kind->time > 0 && (hdi_patches_can(heat) || (pairs && !hdi_heat_filtered(heat))) ? HD_OK
+           : hdi_direct_only(h);
 }
 
 HEATDIFF_API hd_status hd_heat_distance(hd_heat *heat, hd_distance_kind kind, int32_t n_times,
@@ -22152,7 +22154,8 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
     hdi_distance_task(&to.of, &h, 1);
     to.of.answer = hdi_pairs_answer;
     to.of.task.poles = hdi_pairs_by_poles;
-    (void)hdi_heat_sparing(&h, &to.of.task);
+    if (hdi_heat_filtered(heat)) (void)hdi_distance_answer(&to.of);
+    else (void)hdi_heat_sparing(&h, &to.of.task);
     return hdi_heat_end(&h);
 }
 
@@ -22397,14 +22400,14 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_heat_call *h = x->of.task.h;
     hd_heat *heat = h->heat;
     const hdi_distance_row *kind = x->of.kind;
-    const double tol = heat->opts.tol, factor = kind ? kind->time : 1;
+    const double tol = heat->opts.tol, factor = kind ? hdi_distance_times(heat, kind) : 1;
     hd_cost *c = x->to->cost + HD_METHOD_LOCAL;
     hdi_diagonals to;
     hdi_patches p;
     hd_rational set;
     double pieces;
     int pays;
-    if (!hdi_patches_can(heat) || (kind && heat->opts.rational)) return h->e->status;
+    if (!hdi_patches_can(heat)) return h->e->status;
     memset(&to, 0, sizeof to);
     to.task.h = h;
     if (kind) heat->opts.tol = hdi_min(tol, HDI_METRIC_TOL);

@@ -1565,7 +1565,7 @@ static void int_core(void) {
             CHECK(hdi_diagonals_run(&h, &to) >= 0 && h.rep->error_bound < 1e-5);
             s = hdi_scope_begin(h.heat->ctx, h.e);
             if (part) {
-                const char *active = hdi_inverses_fronts(&h, hdi_diagonals_wanted(&to), &s);
+                const char *active = hdi_inverses_fronts(&h, lap->B && to.mass > 0 ? HDI_WANT_ENTRIES : HDI_WANT_DIAGONAL, &s);
                 for (v = 0, left_out = 0; v < h.heat->elim.sym.n_super; v++) left_out += !active[v];
                 CHECK_MSG(left_out > h.heat->elim.sym.n_super / 2, "%d of %d", (int)left_out, (int)h.heat->elim.sym.n_super);
             }

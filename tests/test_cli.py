@@ -656,10 +656,9 @@ needs --t :: trace ico.obj
 times > 0 :: trace ico.obj --t 0
 --filter takes no --poles :: kernel ico.obj --source 0 --filter heat:1 --poles kernel
 --filter takes heat:T, wave:E,SIGMA :: hks ico.obj --filter sine:3
-read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative|--method local}
+read off the factors :: pairs ico.obj --input p.txt --filter heat:1 {--solver cocg|--precond ildl|--method iterative}
 no {--t|--degree} :: hks ico.obj --filter heat:1 {1} 4
 no {--method krylov|--solver lanczos} :: kernel ico.obj --source 1 --filter heat:1 {1}
-no --method local :: {distance --source 1|sample --count 2} ico.obj --filter heat:1 --method local
 no --definition :: distance ico.obj --source 1 --filter heat:1 --definition commute
 --filter :: geodesic ico.obj --source 0 --filter heat:1
 --ordering takes no --precond :: kernel ico.obj --source 0 --t 1 --ordering amd --precond ildl
@@ -1441,6 +1440,8 @@ kernel parts.obj --source 0,390,490 --t 2h2,900h2 --laplacian {fem|voronoi-cot} 
     {1} torus-80-50.obj --t 1h2,2h2 --method direct :: 1e-6
 hks torus-80-50.obj --filter wave:6,0.5 --laplacian {fem|voronoi-cot} --threads 1 --memory-limit 40M --method local :: \
     hks torus-80-50.obj --filter wave:6,0.5 --laplacian {1} --method direct :: 1e-6
+{distance --source 7,3000:0.2,0.3 --definition weighted|distance --source 7|pairs --input p.csv} torus-80-50.obj --filter wave:6,0.5 \
+    --method local :: {1} torus-80-50.obj --filter wave:6,0.5 --method direct :: 1e-8
 distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {classical|weighted} --laplacian {fem|voronoi-cot} \
     --method local :: distance torus-80-50.obj --source 7,3000:0.2,0.3 --t 1h2,2h2 --definition {1} --laplacian {2} --degree 14 :: 2e-9
 distance torus-150-100.obj --source 7,3000:0.2,0.3 --t 1h2 --definition weighted --threads 1 --memory-limit 120M \

@@ -273,7 +273,7 @@ static trial trial_draw(uint64_t *seed, const trial *from, double unit) {
         if (c.solver == 2) c.solver = HD_SOLVER_COCG;    /* no solver has this number */
         if (c.solver != HD_SOLVER_LANCZOS) c.precond = trial_below(seed, 5);
     }
-    if ((c.method < HD_METHOD_KRYLOV || (c.method == HD_METHOD_LOCAL && c.query == QUERY_DIAGONAL)) &&
+    if ((c.method < HD_METHOD_KRYLOV || (c.method == HD_METHOD_LOCAL && c.query >= QUERY_DIAGONAL)) &&
         c.solver != HD_SOLVER_LANCZOS && c.kind < 2) {
         static const int which[] = {10, 3, 6};
         c.poles = c.method == HD_METHOD_LOCAL ? 0 : among(seed, which, 3);

@@ -1231,16 +1231,15 @@ static int check_method(const options *o)
     if (no_poles && (o->degree || o->poles))
         return fail(USAGE, "%s takes no --method %s, which has no use for it",
                     o->degree ? "--degree" : "--poles", name);
-    if (o->filter && (o->method == HD_METHOD_KRYLOV ||
-                      (o->method == HD_METHOD_LOCAL && inverts && !(o->command & CMD_DIAGONAL))))
+    if (o->filter && o->method == HD_METHOD_KRYLOV)
         return fail(USAGE, "--filter takes no --method %s: its poles are made for it, and it needs them", name);
     if (o->filter && (o->degree || o->poles || o->solver == HD_SOLVER_LANCZOS))
         return fail(USAGE, "--filter takes no %s: its poles are made for it, and it needs them",
                     o->degree ? "--degree" : o->poles ? "--poles" : "--solver lanczos");
     if (o->filter && o->command == CMD_PAIRS &&
-        (o->method == HD_METHOD_ITERATIVE || o->method == HD_METHOD_LOCAL || o->solver || o->precond))
-        return fail(USAGE,
-                    "--method takes auto or direct here: distances of a filter are read off the factors");
+        (o->method == HD_METHOD_ITERATIVE || o->solver || o->precond))
+        return fail(USAGE, "--method takes auto, direct or local here: distances of a filter are read off "
+                    "the factors");
     if ((no_poles || o->method == HD_METHOD_DIRECT) && (o->solver || o->precond))
         return fail(USAGE, "%s takes --method iterative or auto: %s does not iterate over systems", iterating,
                     name);
@@ -2724,8 +2723,7 @@ static void find_ways(run *r)
 /* Can a run go on patch by patch where factors of the whole mesh do not fit? */
 static int by_patches(const options *o)
 {
-    return (o->command & (o->filter ? CMD_DIAGONAL : CMD_INVERTS)) && !is_timeless(o) &&
-           o->method != HD_METHOD_LOCAL;
+    return (o->command & CMD_INVERTS) && !is_timeless(o) && o->method != HD_METHOD_LOCAL;
 }
 
 /* A run that does not fit the memory: what it needs, what is allowed, and what would fit. */
