@@ -13775,12 +13775,13 @@ static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
 
 /* Solves for pack i, or for i < 0 the lone real pole, where a single solution is spread into a block. */
 static void hdi_batch_solve(const hdi_elim *m, const hdi_batch *b, int32_t i, const double *const *rhs,
-                            int32_t k, const char *active, hd_context *ctx) {
+                            int32_t k, const char *active, const char *wanted, hd_context *ctx) {
     const int32_t wide = i >= 0 ? k : k > 1 ? 8 : 1;
     hdi_sweep z = hdi_sweep_open(i < 0 ? &m->real : m->pack + i, wide, b->x, b->work);
     int64_t j;
     z.rhs = rhs;
     z.active = active;
+    z.wanted = wanted;
     hdi_sweep_run(&z, ctx);
     for (j = m->sym.n; i < 0 && k == 1 && j-- > 0;) {
         const double x = b->x[j];
@@ -13814,7 +13815,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
     for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
-        hdi_batch_solve(m, b, i, rhs, k, active, ctx);
+        hdi_batch_solve(m, b, i, rhs, k, active, NULL, ctx);
         hdi_batch_check(m, b, i, lane, k);
         hdi_batch_extra(m, i, b->x, lane, k);
     }
@@ -20812,8 +20813,8 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * the poles' own residuals there are measured like that: with y_p = (t L + theta_p B) (..)^-1 e_x on the rim
  * the error of entry (x,x) is at most sum_p |a_p| |y_p|^2 / dist_p in the norm of B^-1. */
 
-/* Random functions, in all and at once; times where they are taken, over t; these and an integral. */
-enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
+/* Random functions; times where they are taken, over t; these and an integral. */
+enum { HDI_PATCH_PROBES = HDI_LANES_BATCH, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
 enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
@@ -20921,45 +20922,46 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
-/* Random functions on the rim from number q on, as functionals C [n] each that k_s applies to: with c = L w
- * and c' = B w on the patch's side, k_s c + d/ds k_s c' = k_s (c - L v), v = B^-1 c'. V: these. work [4 n] */
-static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, double *V, double *work,
-                                  hd_error *e) {
-    const hd_laplacian *lap = l->ball;
-    const hdi_rim *rim = &l->rim;
+/* Random functions on the rim, as functionals that k_s applies to: with c = L w and c' = B w on the patch's
+ * side, k_s c + d/ds k_s c' = k_s (c - L v), v = B^-1 c'. */
+typedef struct hdi_patch_probes {
+    const hdi_local *local;
+    const int32_t *row;          /* of vertices in the plan */
+    double *C, *V;               /* [HDI_PATCH_PROBES][n] c - L v by these rows; v by vertices */
+    double *work;                /* [HDI_PATCH_PROBES][5 n] */
+    hd_error e[HDI_PATCH_PROBES];
+} hdi_patch_probes;
+
+static void hdi_patch_probe(void *arg, int64_t q, int32_t worker) {
+    hdi_patch_probes *x = (hdi_patch_probes *)arg;
+    const hd_laplacian *lap = x->local->ball;
+    const hdi_rim *rim = &x->local->rim;
     const int64_t n = lap->n;
-    double *u = work, *rest = u + n;
-    const int32_t end = q + HDI_PATCH_BLOCK;
-    uint64_t seed;
+    double *C = x->C + q * n, *V = x->V + q * n, *c = x->work + 5 * q * n, *u = c + n;
     int32_t i;
-    memset(C, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *C);
-    memset(V, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *V);
-    for (; q < end && e->status >= 0; q++, C += n, V += n) {
-        memset(u, 0, (size_t)n * sizeof *u);
-        for (i = 0; i < rim->n_edges; i++) {
-            double w;
-            seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
-            w = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
-            C[rim->from[i]] += rim->l[i] * w;
-            u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
-        }
-        if (!rim->b || hdi_mass_solve(lap, HDI_PATCH_STOP, u, V, rest, e) < 0) continue;
-        hdi_pair_apply(lap, 1, 0, V, u);
-        for (i = 0; i < n; i++) C[i] -= u[i];
+    (void)worker;
+    memset(c, 0, 2 * (size_t)n * sizeof *c);
+    memset(V, 0, (size_t)n * sizeof *V);
+    for (i = 0; i < rim->n_edges; i++) {
+        uint64_t seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
+        const double w = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
+        c[rim->from[i]] += rim->l[i] * w;
+        u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
     }
-    return e->status;
+    if (rim->b && hdi_mass_solve(lap, HDI_PATCH_STOP, u, V, u + n, x->e + q) >= 0) {
+        hdi_pair_apply(lap, 1, 0, V, u);
+        for (i = 0; i < n; i++) c[i] -= u[i];
+    }
+    for (i = 0; i < n; i++) C[x->row[i]] = c[i];
 }
 
 /* Weights with which the set's poles make r(s) at time m, or after the times its integral until half of t, by
- * least squares; of the caller's sets y of one pole, real and imaginary parts in turn. work:
- * hdi_residues_room of the points, and three times as many numbers. */
+ * least squares. work: hdi_residues_room of the points, and three times as many numbers. */
 static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, hd_c64 *w) {
     enum { N = HDI_RESOLVENT_POINTS };
     double *x = work, *u = x + N, *f = u + N;
     hd_rational fit = *set;
     int32_t i;
-    for (i = 0; i < set->n_poles; i++) w[i] = hdi_c(i == m / 2 && m % 2 == 0, i == m / 2 && m % 2 ? -1 : 0);
-    if (set->kind == HD_POLES_OWN) return;
     for (i = 0; i < N; i++) {
         const double s = (i + 0.5) / (double)N;
         x[i] = -2 * s / ((1 - s) * (1 - s));
@@ -20970,56 +20972,119 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
-/* Adds the squares of by u + v, v [n] by vertices or NULL, to their means. */
-static void hdi_patch_add(const hd_laplacian *lap, double by, const double *u, const double *v, double *sum) {
-    int32_t i;
-    for (i = 0; i < lap->n; i++) {
-        const double y = by * u[i] + (v ? v[lap->vertex[i]] : 0);
-        sum[i] += y * (y / (double)HDI_PATCH_PROBES);
+/* What is measured at the first `count` vertices: means of squares over the random functions. */
+typedef struct hdi_patch_sums {
+    int32_t count;
+    const double *V;             /* of the caller's sets, else NULL */
+    double by;
+    const hd_c64 *weight;        /* [HDI_PATCH_ROWS][HD_MAX_POLES] */
+    double *u;                   /* [count][HDI_PATCH_PROBES][HDI_PATCH_ROWS] by these, as far as they are added */
+    double *sum;                 /* [poles or HDI_PATCH_ROWS][count] */
+} hdi_patch_sums;
+
+/* The caller's sets: adds squares of by x + v for the poles of pack i, or with i = -1 the lone real pole. */
+static void hdi_patch_squares(const hdi_elim *m, const hdi_patch_sums *a, int32_t i, const double *x) {
+    const int32_t first = i < 0 ? 0 : m->lone + 1 + 4 * i, n = m->sym.n, part = i < 0 ? 0 : HDI_PACK_LANES;
+    const int32_t here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, HDI_PACK_LANES);
+    int32_t j, r, p;
+    for (j = 0; j < n; j++) {
+        const int32_t v = m->lap->vertex[j];
+        for (r = 0; r < HDI_PATCH_PROBES; r++, x += i < 0 ? 1 : HDI_PACK) {
+            for (p = 0; p < here && v < a->count; p++) {
+                const double re = a->by * x[p] + a->V[(int64_t)r * n + v], im = part ? a->by * x[p + part] : 0;
+                a->sum[(int64_t)(first + p) * a->count + v] += (re * re + im * im) / (double)HDI_PATCH_PROBES;
+            }
+        }
     }
 }
 
-/* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
- * patch's vertices: with rows [n] in elimination order by hdi_patch_weights. */
-static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t, hd_rational *set,
-                                 hdi_scope *s) {
-    const int32_t n = l->n;
-    const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
-    double *C = HDI_TAKE(s, double, 2 * HDI_PATCH_BLOCK * (uint64_t)n), *V = C ? C + HDI_PATCH_BLOCK * n : C;
-    double *work = HDI_TAKE(s, double, room), *sum = NULL, by;
-    int32_t *id = HDI_TAKE(s, int32_t, n), i, j, q, own;
-    hd_c64 *weight = HDI_TAKE(s, hd_c64, 2 * HD_MAX_POLES * HD_MAX_POLES);
-    hdi_terms terms[HDI_PATCH_BLOCK];
-    hdi_extra rows;
-    hdi_heat_call c;
-    in->t = hdi_heat_scaled(in->heat, t);
-    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
-    own = set->kind == HD_POLES_OWN;
-    by = in->heat->scale * (own ? t : 1);
-    rows.n = own ? 2 * set->n_poles : HDI_PATCH_ROWS;
-    rows.stride = HD_MAX_POLES;
-    rows.weight = weight;
-    rows.sum = HDI_TAKE(s, double, HDI_PATCH_BLOCK * (uint64_t)n * (uint64_t)hdi_high32(rows.n, 4));
-    sum = HDI_TAKE_ZERO(s, double, (uint64_t)n * (uint64_t)rows.n);
-    if (in->e->status < 0) return NULL;
-    for (i = 0; i < n; i++) id[i] = i;
-    for (q = 0; q < HDI_PATCH_BLOCK; q++) {
-        const hdi_terms one = {n, 0, id, C + (int64_t)q * n};
-        terms[q] = one;
-    }
-    for (q = 0; q < rows.n; q++) hdi_patch_weights(set, q, work, weight + q * HD_MAX_POLES);
-    for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
-        if (hdi_patch_probes(l, q, C, V, rows.sum, in->e) < 0) return NULL;
-        hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, HDI_PATCH_BLOCK, terms);
-        c.rows = rows;
-        if (hdi_columns_run(in, &c) < 0) return NULL;
-        for (j = 0; j < HDI_PATCH_BLOCK * rows.n; j++) {
-            const int32_t row = j % rows.n;
-            const double *v = own && row % 2 == 0 ? V + (int64_t)(j / rows.n) * n : NULL;
-            hdi_patch_add(in->heat->elim.lap, by, rows.sum + (int64_t)j * n, v, sum + (int64_t)row * n);
+/* Other sets: adds what the poles of pack i, or with i = -1 the lone real pole, make of the weighted sums. */
+static void hdi_patch_add(const hdi_elim *m, const hdi_patch_sums *a, int32_t i, const double *x) {
+    const int32_t width = i < 0 ? 1 : HDI_PACK;
+    double coef[HDI_PATCH_ROWS][HDI_PACK];
+    int32_t j, r, row, q;
+    for (row = 0; row < HDI_PATCH_ROWS; row++)
+        hdi_elim_coef(m, i, a->weight + row * HD_MAX_POLES, coef[row]);
+    for (j = 0; j < m->sym.n; j++) {
+        const int32_t v = m->lap->vertex[j];
+        double *u = a->u + (int64_t)v * (HDI_PATCH_PROBES * HDI_PATCH_ROWS);
+        for (r = 0; r < HDI_PATCH_PROBES; r++, x += width) {
+            for (row = 0; row < HDI_PATCH_ROWS && v < a->count; row++, u++)
+                for (q = 0; q < width; q++) *u += coef[row][q] * x[q];
         }
     }
-    return sum;
+}
+
+/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and what is
+ * not measured none down. The arrays lie where the update matrices were. */
+static hd_status hdi_patch_solve(hdi_elim *m, const hdi_patch_sums *a, const double *C, hd_error *e) {
+    const int32_t n = m->sym.n;
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    const double *rhs[HDI_PATCH_PROBES];
+    char *active = HDI_TAKE_ZERO(&s, char, 2 * (uint64_t)m->sym.n_super), *wanted;
+    uint64_t size;
+    hdi_batch b;
+    int32_t i, q;
+    s.left = hdi_elim_room(m, m->n_used);
+    if (s.left > 0) s.room = (char *)(void *)m->pack->work;
+    b.x = HDI_TAKE(&s, double, hdi_batch_size(m, HDI_PATCH_PROBES, &size));
+    if (e->status < 0) return hdi_scope_end(&s);
+    b.work = b.x + size;
+    wanted = active + m->sym.n_super;
+    for (i = 0; i < n; i++)
+        if (m->lap->vertex[i] < a->count) hdi_sweep_touch(&m->sym, i, wanted);
+    for (q = 0; q < HDI_PATCH_PROBES; q++) {
+        rhs[q] = C + (int64_t)q * n;
+        for (i = 0; i < n; i++)
+            if (rhs[q][i] != 0) hdi_sweep_touch(&m->sym, i, active);
+    }
+    for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
+        hdi_batch_solve(m, &b, i, rhs, HDI_PATCH_PROBES, active, wanted, m->ctx);
+        if (a->V) hdi_patch_squares(m, a, i, b.x);
+        else hdi_patch_add(m, a, i, b.x);
+    }
+    return hdi_scope_end(&s);
+}
+
+/* The sums of the poles of the set for time t, or of the weighted sums of hdi_patch_weights. */
+static double *hdi_patch_measure(const hdi_local *l, hdi_heat_call *in, int32_t count, double t,
+                                 hd_rational *set, hdi_scope *s) {
+    const uint64_t n = (uint64_t)l->n;
+    const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
+    hdi_elim *m = &in->heat->elim;
+    hd_c64 weight[HDI_PATCH_ROWS * HD_MAX_POLES];
+    hdi_patch_sums a = {count, NULL, 0, weight, NULL, NULL};
+    hdi_patch_probes x;
+    hdi_heat_call c;
+    int32_t own, q, v;
+    in->t = hdi_heat_scaled(in->heat, t);
+    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
+    hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, 1, NULL);
+    if (c.e->status >= 0) (void)hdi_direct_factors(&c, HDI_AFTER_INVERSE, 1);
+    if (hdi_heat_end(&c) < 0) *in->e = c.rep->error;
+    own = set->kind == HD_POLES_OWN;
+    memset(&x, 0, sizeof x);
+    x.local = l;
+    x.row = m->lap->row;
+    x.C = HDI_TAKE(s, double, (uint64_t)HDI_PATCH_PROBES * n);
+    x.V = HDI_TAKE(s, double, (uint64_t)HDI_PATCH_PROBES * n);
+    x.work = HDI_TAKE(s, double, 5 * HDI_PATCH_PROBES * n + room);
+    a.sum = HDI_TAKE_ZERO(s, double, (uint64_t)(own ? set->n_poles : HDI_PATCH_ROWS) * (uint64_t)count);
+    if (!own) a.u = HDI_TAKE_ZERO(s, double, (uint64_t)count * (HDI_PATCH_PROBES * HDI_PATCH_ROWS));
+    if (in->e->status < 0) return NULL;
+    for (q = 0; q < HDI_PATCH_ROWS && !own; q++) hdi_patch_weights(set, q, x.work, weight + q * HD_MAX_POLES);
+    hdi_parallel(m->ctx, HDI_PATCH_PROBES, hdi_patch_probe, &x);
+    for (q = 0; q < HDI_PATCH_PROBES && in->e->status >= 0; q++) *in->e = x.e[q];
+    a.V = own ? x.V : NULL;
+    a.by = in->heat->scale * (own ? t : 1);
+    if (in->e->status < 0 || hdi_patch_solve(m, &a, x.C, in->e) < 0) return NULL;
+    for (v = 0; v < count && !own; v++) {
+        for (q = 0; q < HDI_PATCH_PROBES * HDI_PATCH_ROWS; q++, a.u++) {
+            const double y = a.by * *a.u;
+            a.sum[(int64_t)(q % HDI_PATCH_ROWS) * count + v] += y * (y / (double)HDI_PATCH_PROBES);
+        }
+    }
+    return a.sum;
 }
 
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
@@ -21049,20 +21114,19 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
-/* The largest that rows of squares make of what is left out of entries of the first `count` vertices, over
- * t^2: by the set's poles, or NULL: by the integral. */
-static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
-                             const hd_rational *set) {
-    const hd_laplacian *lap = in->heat->elim.lap;
+/* The largest that sums make of what is left out of entries of the first `count` vertices, over t^2: by the
+ * set's poles, or NULL: by the integral. */
+static double hdi_patch_most(const double *sum, int32_t count, const hd_rational *set) {
+    const int32_t n = set ? set->n_poles : HDI_PATCH_ROWS;
     double most = 0, r[HDI_PATCH_ROWS] = {0};
-    int32_t i, p;
-    for (i = 0; i < lap->n; i++) {
-        const double *own = sum + i;
+    int32_t v, p;
+    for (v = 0; v < count; v++) {
         double all = 0;
-        if (lap->vertex[i] >= count) continue;
-        for (p = 0; p < HDI_PATCH_ROWS && !set; p++) r[p] = hdi_max(r[p], sqrt(own[(int64_t)p * lap->n]));
-        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)lap->n)
-            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[lap->n]);
+        for (p = 0; p < n; p++) {
+            const double own = sum[(int64_t)p * count + v];
+            if (set) all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * own;
+            else r[p] = hdi_max(r[p], sqrt(own));
+        }
         most = hdi_max(most, all);
     }
     return set ? most : hdi_patch_integral(r);
@@ -21089,10 +21153,10 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
     for (q = 0; q < times && x->local->rim.n > 0 && in->e->status >= 0; q++) {
         hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
         hd_rational set;
-        const double *sum = hdi_patch_squares(x->local, in, own ? in->ask.t[q] : x->t, &set, &s);
-        double most = sum && !own ? x->t * x->t * hdi_patch_most(in, sum, count, NULL) : 0;
+        const double *sum = hdi_patch_measure(x->local, in, count, own ? in->ask.t[q] : x->t, &set, &s);
+        double most = sum && !own ? x->t * x->t * hdi_patch_most(sum, count, NULL) : 0;
         for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
-            if (own) most = hdi_patch_most(in, sum, count, times > 1 ? &set : heat->sets + i);
+            if (own) most = hdi_patch_most(sum, count, times > 1 ? &set : heat->sets + i);
             off[i] = hdi_bound_of(HDI_PATCH_SAFETY * most / lap->b_ratio) / heat->scale;
         }
         (void)hdi_scope_end(&s);
