@@ -1709,7 +1709,7 @@ static void *hdi_kept_get(hd_context *ctx, uint64_t total) {
     while (ctx->kept) {
         void **at = hdi_kept_find(ctx, total);
         const uint64_t bytes = hdi_block_bytes(*at);
-        if (bytes >= total && bytes - total <= total / 4) return hdi_kept_take(at);
+        if (bytes >= total && bytes - total <= total / 8) return hdi_kept_take(at);
         if (ctx->bytes_in_use + total <= most) break;
         at = hdi_kept_find(ctx, ctx->bytes_in_use + total - most);
         hdi_free_now(ctx, hdi_kept_take(at));
@@ -7988,13 +7988,15 @@ static void hdi_nd_sweep(const hdi_nd_graph *g, const hdi_pair *key, double tota
     for (i = keep; i < g->n; i++) g->side[key[i].id] = 1;
 }
 
+enum { HDI_DIRECTIONS = 9 };
+static const signed char hdi_directions[HDI_DIRECTIONS][3] = {
+    {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+
 /* The values along which the vertices are swept, as keys to sort by. kind 0: differences of graph
  * distances from two vertices far apart; 1: places along the line between these; others: places along a
  * fixed direction. work [3 g->n] */
 static void hdi_nd_sweep_keys(const hdi_nd *nd, const hdi_nd_graph *g, int32_t kind, hdi_pair *key,
                               int32_t *work) {
-    static const signed char hdi_directions[9][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, -1, 0},
-                                                 {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
     int32_t v, d, a = 0, b = 0, *da = work, *db = work + g->n, *queue = work + 2 * g->n;
     double way[3] = {0, 0, 0};
     if (kind < 2) {
@@ -20828,7 +20830,7 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
-#define HDI_PATCH_BYTES 85
+#define HDI_PATCH_BYTES 90
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
 #define HDI_PATCHES_FIT "factors would not fit the byte limit"
@@ -20867,11 +20869,58 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Cuts what is to be so many pieces in two, breadth-first from an end. Returns where the second begins. */
+/* Sets bit k of the marks of `first` of a piece's rows, those that come first along direction k. Places from
+ * lo on are within `width`. */
+static void hdi_patch_across(const hdi_patches *x, const int32_t *row, int32_t n, int32_t first, int32_t k,
+                             const double *lo, double width) {
+    enum { BINS = 1024 };
+    const double *xyz = x->to->task.h->heat->source->xyz;
+    int32_t count[3 * BINS + 1] = {0}, *bin = x->queue, i, d, at = 0;
+    for (i = 0; i < n; i++) {
+        double place = 1;                        /* from 0 to 3 */
+        for (d = 0; d < 3; d++)
+            place += hdi_directions[k][d] * ((xyz[3 * (int64_t)row[i] + d] - lo[d]) / width);
+        bin[i] = (int32_t)(place * BINS);
+        count[bin[i]]++;
+    }
+    for (; count[at] <= first; at++) first -= count[at];
+    for (i = 0; i < n; i++)
+        if (bin[i] < at || (bin[i] == at && first-- > 0)) x->mark[row[i]] |= 1 << k;
+}
+
+/* Cuts what is to be so many pieces in two: breadth-first from an end, or where edges are fewer across a
+ * direction. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
-    hdi_patch_walk(x, x->row + begin, end - begin, 0);
-    hdi_patch_walk(x, x->row + begin, end - begin, 1);
-    return begin + (int32_t)((int64_t)(end - begin) * (pieces / 2) / pieces);
+    const hd_laplacian *lap = x->to->task.h->heat->source;
+    const int32_t n = end - begin, first = (int32_t)((int64_t)n * (pieces / 2) / pieces);
+    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, width = 0;
+    int32_t *row = x->row + begin, edges[HDI_DIRECTIONS + 1] = {0}, best = HDI_DIRECTIONS, i, k, to[2] = {first, 0};
+    int64_t p;
+    hdi_patch_walk(x, row, n, 0);
+    hdi_patch_walk(x, row, n, 1);
+    for (i = 0; i < n; i++) {
+        x->mark[row[i]] = 2 << HDI_DIRECTIONS | (i < first) << HDI_DIRECTIONS;
+        for (k = 0; k < 3 && lap->xyz; k++) {
+            lo[k] = hdi_min(lo[k], lap->xyz[3 * (int64_t)row[i] + k]);
+            hi[k] = hdi_max(hi[k], lap->xyz[3 * (int64_t)row[i] + k]);
+        }
+    }
+    for (k = 0; k < 3; k++) width = hdi_max(width, hi[k] - lo[k]);
+    for (k = 0; k < HDI_DIRECTIONS && width > 0; k++) hdi_patch_across(x, row, n, first, k, lo, width);
+    for (i = 0; i < n && width > 0; i++) {
+        for (p = lap->L.row_ptr[row[i]]; p < lap->L.row_ptr[row[i] + 1]; p++) {
+            const int32_t there = x->mark[lap->L.col[p]], apart = there ? there ^ x->mark[row[i]] : 0;
+            for (k = 0; apart >> k; k++) edges[k] += apart >> k & 1;
+        }
+    }
+    for (k = 0; k < HDI_DIRECTIONS && width > 0; k++)
+        if (edges[k] < edges[best]) best = k;
+    for (i = 0; i < n; i++) {
+        x->queue[to[x->mark[row[i]] >> best & 1]++] = row[i];
+        x->mark[row[i]] = 0;
+    }
+    memcpy(row, x->queue, (size_t)n * sizeof *row);
+    return begin + first;
 }
 
 /* Finds a piece with its margin; stops beyond `most` rows. */
