@@ -222,8 +222,10 @@ typedef struct hd_context {
     uint64_t waits;             /* of the calling thread for others */
     hd_threads *threads;        /* running; NULL: none; not counted in bytes_in_use */
     int32_t n_holders;          /* objects made with this context */
-    int32_t keeps;              /* during some calls: large blocks that are freed wait for their next use */
-    void *kept;                 /* these; NULL: none; counted in bytes_in_use */
+    /* During some calls large blocks that are freed wait for their next use: these, counted in bytes_in_use,
+     * or NULL; and 0 or 1 more than the most bytes without them. */
+    void *kept;
+    uint64_t keeps;
 } hd_context;
 
 /* How many threads work for this context. */
@@ -1671,7 +1673,8 @@ static void hdi_large_pages(char *raw, size_t total) {
 
 /* Fresh memory takes a fifth of the time of work that is done piece by piece. While a context keeps blocks,
  * those that are large wait in a list when they are freed, each with the address of the next one in it. They
- * go to who asks for about as much. Blocks that wait never make the peak higher than it is without them. */
+ * go to who asks for about as much. New blocks are a little larger than was asked for: pieces are nearly alike.
+ * Blocks that wait add an eighth at most to the peak, and none where the byte limit has no room. */
 enum { HDI_KEEP_LEAST = 1 << 18 };
 
 /* Where the address stands of the smallest that has so many bytes, or else of the largest. Some wait. */
@@ -1705,7 +1708,10 @@ static void hdi_free_now(hd_context *ctx, void *block) {
 /* A block that waits, for so many bytes. NULL: none does; and so many were given back that a new one fits. */
 static void *hdi_kept_get(hd_context *ctx, uint64_t total) {
     const uint64_t limit = ctx->byte_limit ? ctx->byte_limit : UINT64_MAX;
-    const uint64_t most = ctx->bytes_peak < limit ? ctx->bytes_peak : limit;
+    const uint64_t live = ctx->keeps ? (uint64_t)hdi_bytes_live(ctx) + total : 0;
+    uint64_t most;
+    if (ctx->keeps && ctx->keeps < live) ctx->keeps = live;
+    most = ctx->keeps + ctx->keeps / 8 < limit ? ctx->keeps + ctx->keeps / 8 : limit;
     while (ctx->kept) {
         void **at = hdi_kept_find(ctx, total);
         const uint64_t bytes = hdi_block_bytes(*at);
@@ -1719,7 +1725,7 @@ static void *hdi_kept_get(hd_context *ctx, uint64_t total) {
 
 /* Begins to keep blocks, or ends it. */
 static void hdi_keep_blocks(hd_context *ctx, int on) {
-    ctx->keeps = on;
+    ctx->keeps = (uint64_t)on;
     while (!on && ctx->kept) hdi_free_now(ctx, hdi_kept_take(&ctx->kept));
 }
 
@@ -1737,6 +1743,8 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
     total = (size_t)head[0];
     kept = hdi_kept_get(ctx, total);
     if (kept) return kept;
+    if (ctx->keeps && total >= HDI_KEEP_LEAST &&
+        (!ctx->byte_limit || ctx->bytes_in_use + total + total / 32 <= ctx->byte_limit)) total += total / 32;
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
     raw = (char *)(ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total)
@@ -10416,7 +10424,8 @@ typedef struct hdi_inverse {
     const hdi_forms *forms;
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
-    double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
+    int32_t *seat;               /* [n_tasks + 1] of subtrees that work, and of the top, in the scratch: */
+    double *scratch, *chunk;     /* [seats][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
 } hdi_inverse;
 
@@ -10895,7 +10904,7 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
 static hdi_front hdi_inverse_open(const void *arg, int32_t v, int32_t room) {
     const hdi_inverse *z = (const hdi_inverse *)arg;
     const hdi_factor *f = z->f;
-    hdi_front w = hdi_front_open(f, v, room, z->scratch + z->scratch_size * (size_t)room);
+    hdi_front w = hdi_front_open(f, v, room, z->scratch + z->scratch_size * (size_t)z->seat[room]);
     const int64_t n = hdi_least(w.p, HDI_PANEL);
     w.z = w.work;
     w.T = w.z + f->width * (f->sym->panel[v + 1] - f->sym->panel[v]);
@@ -10958,19 +10967,28 @@ static int hdi_inverse_part(const void *arg, const hdi_front *w, int64_t r0, int
 }
 
 /* The arrays that inverting factors of the given width takes. */
-static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const char *active,
+                             hdi_scope *keep) {
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + (int)HDI_PANEL / (int)HDI_TILE_ROWS + 2;
     uint64_t size;
-    int32_t v;
+    int32_t v, task = -1, seats = 0;
     memset(z, 0, sizeof *z);
+    z->active = active;
+    z->seat = HDI_TAKE_ZERO(keep, int32_t, s->n_tasks + 1);
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
+        if (!hdi_inverse_works(z, v)) continue;
         size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), s->panel[v + 1] - s->panel[v], width);
         if (s->n_top && size > z->top_size) z->top_size = size;
-        if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
+        if (s->task_of[v] < 0) continue;
+        if (size > z->scratch_size) z->scratch_size = size;
+        seats += s->task_of[v] != task;
+        task = s->task_of[v];
+        if (z->seat) z->seat[task] = seats - 1;
     }
+    if (z->seat) z->seat[s->n_tasks] = seats;
     z->chunk_size = hdi_inverse_buffer(width);
-    size = z->scratch_size * (uint64_t)s->n_tasks + z->top_size;
+    size = z->scratch_size * (uint64_t)seats + z->top_size;
     z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
 }
@@ -11018,7 +11036,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    hdi_inverse_take(&z, &f->sym, of->width, &s);
+    hdi_inverse_take(&z, &f->sym, of->width, NULL, &s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
@@ -14069,7 +14087,7 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
     int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
-    hdi_inverse_take(&z, &m->sym, width, &s);
+    hdi_inverse_take(&z, &m->sym, width, sums->active, &s);
     z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
     if (forms) {
         room = hdi_forms_make(&q, &m->sym, width, &m->source->L, &s);
@@ -14078,7 +14096,6 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
     }
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
-    z.active = sums->active;
     z.forms = forms ? &q : NULL;
     z.values = sums->values;
     z.stride = sums->stride;
@@ -14098,7 +14115,7 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hdi_scope *s) {
     hdi_inverse z;
-    hdi_inverse_take(&z, &m->sym, f->width, s);
+    hdi_inverse_take(&z, &m->sym, f->width, NULL, s);
     if (s->e->status < 0) return s->e->status;
     memset(out, 0, (size_t)m->sym.n * sizeof *out);
     z.coef = coef;
@@ -14186,9 +14203,9 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 
 /* Bytes that the factors of a set take at their peak beyond those that are there: what they and
  * hdi_elim_bound keep, and the most that hdi_elim_bound, an inversion for so many sums, or solves take for
- * a while. solves: the bytes of these. */
+ * a while. solves: the bytes of these. active: of hdi_inverse. */
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
-                              uint64_t solves, hd_error *e) {
+                              const char *active, uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
     const int bound = after == HDI_AFTER_BOUND;
     hdi_scope kept = hdi_scope_counting();
@@ -14206,7 +14223,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
         if (bound ? i : !(i == 0 ? lone : packs)) continue;
         s.left = bound ? hdi_elim_room(m, packs) : 0;
         if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
-        hdi_inverse_take(&z, &m->sym, width, &s);
+        hdi_inverse_take(&z, &m->sym, width, active, &s);
         if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
         if (after == HDI_AFTER_FORMS) s.bytes += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < s.bytes) most = s.bytes;
@@ -15494,12 +15511,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_factor_take(&f, NULL, &m->sym, 1, &held);
         (void)HDI_TAKE(&held, double, hdi_ground_size(m));
         (void)HDI_TAKE(&make, double, nnz);
-        hdi_inverse_take(&z, &m->sym, 1, &make);
+        hdi_inverse_take(&z, &m->sym, 1, NULL, &make);
     }
     if (forms && !g->formed) {
         hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
         (void)HDI_TAKE(&form, double, nnz + (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
-        hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
+        hdi_inverse_take(&z, &m->sym, HDI_PACK, NULL, &form);
     }
     return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
@@ -17296,6 +17313,7 @@ typedef struct hdi_heat_call {
     const hdi_local *part;       /* on a part of the mesh: that part; the request is in terms of the whole */
     double most;                 /* its answers are stored if they leave out no more than this */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
+    const char *active;          /* for these the fronts to invert; NULL: all */
     const double *left;          /* what the part leaves out of each column of k_t, scaled; NULL: nothing */
     double left_out;             /* of the one under way */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
@@ -18133,7 +18151,7 @@ static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *s
     if (after == HDI_AFTER_BOUND) c->flops += (1 + HDI_INVERT - hdi_set_lone(set)) * f.flops;
     if (heat->elim.ctx) {
         const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), hdi_high32(k, probes));
-        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
+        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, NULL, solving, h->e);
         if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
             bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
         /* the solves' arrays of one time stay while the next one is factorised */
@@ -18169,7 +18187,7 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     if (!hdi_elim_holds(m, &set, h->t)) {
         need = hdi_batches_need(h->heat, hdi_set_packs(&set), solves ? h->ask.k : 1);
-        need = hdi_elim_need(m, &set, after, n_sets, need, h->e);
+        need = hdi_elim_need(m, &set, after, n_sets, h->active, need, h->e);
         if (h->e->status < 0 ||
             hdi_need(h->heat->ctx, need, "factors of the poles, and solves or their inversion", h->e) < 0)
             return h->e->status;
@@ -18583,18 +18601,21 @@ static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
     return sqrt(hdi_dot3(d, d));
 }
 
-/* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
- * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
-static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
-    const hd_laplacian *lap = l->source;
-    hdi_reached at = {0, 0, row, row};
+/* What lengths at a row are multiplied by: 1 where L is a Laplace operator for them, for then
+ * sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
+static double hdi_local_unit(const hd_laplacian *lap, int32_t row) {
     double sum = 0;
     int64_t p;
     for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->xyz; p++) {
         const double edge = hdi_local_apart(lap, row, lap->L.col[p]);
         sum += fabs(lap->L.val[p]) * (edge * edge);
     }
-    at.unit = sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
+    return sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
+}
+
+/* Adds one of the first rows. Its unit is found where it is needed. */
+static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
+    const hdi_reached at = {0, -1, row, row};
     return hdi_local_put(l, at, e);
 }
 
@@ -18617,6 +18638,8 @@ static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t
             }
             for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
                 const int32_t there = l->place[lap->L.col[p]] - 1;
+                if (there >= 0 && l->at[there].way == 0) continue;
+                if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
                 at.row = lap->L.col[p];
                 at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
                 if (there < 0 && (at.way <= reach || level < hops)) {
@@ -20142,7 +20165,7 @@ static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const doub
     x->count = count;
     x->t = t;
     x->of.wanted = wanted;
-    x->of.active = h->core > 0 ? hdi_inverses_fronts(h, wanted, s) : NULL;
+    x->of.active = h->active;
     x->of.stride = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
     x->set = HDI_TAKE_ZERO(s, hd_rational, count);
     x->slack = HDI_TAKE(s, double, count);
@@ -20818,7 +20841,7 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
 /* Random functions; times where they are taken, over t; these and an integral. */
 enum { HDI_PATCH_PROBES = HDI_LANES_BATCH, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
-enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
+enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
@@ -20831,6 +20854,10 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 #define HDI_WHOLE_ROW 500
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 90
+/* Of a piece that did not fit they were so many times as many. */
+#define HDI_PATCH_MORE 1.05
+/* Of those that would fit, for the others of a region need more. */
+#define HDI_PATCH_SURE 0.97
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
 #define HDI_PATCHES_FIT "factors would not fit the byte limit"
@@ -20840,7 +20867,8 @@ typedef struct hdi_patches {
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
     int32_t done;                /* pieces that are answered */
-    int32_t core;                /* pieces have so many rows at most */
+    int32_t best, core;          /* rows of a piece: for least work; where they fit as well */
+    double left;                 /* bytes for a patch */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
@@ -20938,6 +20966,18 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
     return hdi_local_grow(x->local, edge, hops, most, h->e);
 }
 
+/* How many rows a piece can have for factors of its patch to fit, by one that was found: margins stay as wide. */
+static double hdi_patch_fits(const hdi_patches *x, int32_t rows) {
+    const hd_csr *L = &x->to->task.h->heat->source->L;
+    const double n = x->local->n, stored = hdi_fill_guess(n, n * (double)L->nnz / L->n_rows).stored;
+    const double side = sqrt(x->left / (x->each * stored) * n) - sqrt(n) + sqrt(rows);
+    return side > 0 ? side * side : 0;
+}
+
+static int32_t hdi_patch_pieces(const hdi_patches *x, int32_t rows) {
+    return hdi_high32(1, (int32_t)ceil((double)rows / x->core - 0.05));
+}
+
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
  * all patches less those of the whole mesh. */
 static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
@@ -20948,16 +20988,13 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
     int32_t begin = 0, end = x->n, middle;
     while (hdi_patch_find(x, begin, end, INT32_MAX) >= 0) {
         const hdi_fill f = hdi_fill_guess(x->local->n, x->local->n * wide);
-        double cost, more;
+        const double core = end - begin, most = hdi_patch_fits(x, end - begin);
+        const double cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / core;
         if (least == HUGE_VAL) x->fill = f;
-        cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
-        more = hdi_bytes_left(h->heat->ctx) / (x->each * f.stored);
-        if (more > 1 && cost < least) {
-            /* where the limit makes pieces small they have as many rows as fit: margins stay as wide */
-            const double core = end - begin, margin = sqrt(x->local->n) - sqrt(core);
-            const double side = least < HUGE_VAL ? 0 : sqrt(more * x->local->n) - margin;
+        if (most > core && cost < least) {
+            /* where the limit makes pieces small they have as many rows as fit */
+            x->best = (int32_t)hdi_max(core, hdi_min(least < HUGE_VAL ? 0 : most, 1.9 * core));
             least = cost;
-            x->core = (int32_t)hdi_max(core, hdi_min(side * side, 1.9 * core));
             x->fill = f;
         } else if (least < HUGE_VAL) {
             break;
@@ -20967,7 +21004,8 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
         if (begin == 0) begin = middle;          /* pieces inside the mesh have margins all around */
         else end = middle;
     }
-    if (least == HUGE_VAL) x->core = end - begin;
+    if (least == HUGE_VAL) x->best = end - begin;
+    x->core = x->best;
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
@@ -21107,16 +21145,18 @@ static double *hdi_patch_measure(const hdi_local *l, hdi_heat_call *in, int32_t 
     hdi_heat_call c;
     int32_t own, q, v;
     in->t = hdi_heat_scaled(in->heat, t);
-    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
+    if (in->e->status < 0 || hdi_heat_set(in, set) < 0) return NULL;
+    memset(&x, 0, sizeof x);
+    x.C = HDI_TAKE(s, double, HDI_PATCH_PROBES * n);     /* before factors: values will need as much */
+    x.V = HDI_TAKE(s, double, HDI_PATCH_PROBES * n);
+    if (in->e->status < 0) return NULL;
     hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, 1, NULL);
+    c.active = in->active;
     if (c.e->status >= 0) (void)hdi_direct_factors(&c, HDI_AFTER_INVERSE, 1);
     if (hdi_heat_end(&c) < 0) *in->e = c.rep->error;
     own = set->kind == HD_POLES_OWN;
-    memset(&x, 0, sizeof x);
     x.local = l;
     x.row = m->lap->row;
-    x.C = HDI_TAKE(s, double, (uint64_t)HDI_PATCH_PROBES * n);
-    x.V = HDI_TAKE(s, double, (uint64_t)HDI_PATCH_PROBES * n);
     x.work = HDI_TAKE(s, double, 5 * HDI_PATCH_PROBES * n + room);
     a.sum = HDI_TAKE_ZERO(s, double, (uint64_t)(own ? set->n_poles : HDI_PATCH_ROWS) * (uint64_t)count);
     if (!own) a.u = HDI_TAKE_ZERO(s, double, (uint64_t)count * (HDI_PATCH_PROBES * HDI_PATCH_ROWS));
@@ -21196,6 +21236,8 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
     int32_t count = core, i, q;
     int64_t p;
     memset(off, 0, (size_t)columns * sizeof *off);
+    if (hdi_heat_analysed(in->heat, in->e) < 0) return in->e->status;
+    in->active = hdi_inverses_fronts(in, hdi_diagonals_wanted(x->to), &in->s);
     for (i = 0; i < core && lap->B; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             count = hdi_high32(count, lap->L.col[p] + 1);
@@ -21257,16 +21299,17 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     return hdi_scope_end(&s);
 }
 
-/* A piece. Its margin grows until as little is left out as of columns. */
+/* A piece, which has been found. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     hd_report rep;
     int32_t tries;
-    for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
+    for (tries = 1;; tries++) {
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
         x->reach = hdi_local_more(h->heat, x->reach, tries - 1, rep.error_local / x->wanted);
+        if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return h->e->status;
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21285,7 +21328,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     memset(x, 0, sizeof *x);
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
-    x->core = x->n;
+    x->best = x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
     x->reach = hdi_local_reach(h->heat, h->heat->n_sets);
@@ -21296,6 +21339,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     if (h->e->status < 0 || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return h->e->status;
     x->each = HDI_PATCH_BYTES * (1 + hdi_set_packs(&set));
     x->queue = x->row + x->n;
+    x->left = hdi_bytes_left(h->heat->ctx);
     for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
     return HD_OK;
 }
@@ -21311,21 +21355,50 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* Rows from begin to end, in pieces. Where one exceeds the byte limit it is halved. */
-static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
-    hdi_heat_call *h = x->to->task.h;
-    int32_t middle;
-    if (end - begin <= x->core) {
-        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0) return h->e->status;
-        if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
-        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
-        hdi_error_clear(h->e);
-        hdi_local_free(h->heat);
-        x->local = hdi_local_open(h->heat, h->e);
-        if (h->e->status < 0) return h->e->status;
+/* How many rows a piece has in a region that is a few pieces large: the first of them has to fit. */
+static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
+    int32_t pieces = hdi_patch_pieces(x, end - begin), tries, k;
+    for (tries = 0; tries < HDI_PATCH_FEW; tries++) {
+        int32_t middle = end;
+        double fits;
+        for (k = pieces; k > 1; k /= 2) middle = hdi_patch_halve(x, begin, middle, k);
+        if (hdi_patch_find(x, begin, middle, INT32_MAX) < 0) break;
+        fits = HDI_PATCH_SURE * hdi_patch_fits(x, middle - begin);
+        if (middle - begin <= hdi_max(fits, HDI_PATCH_LEAST)) break;
+        pieces = hdi_high32(pieces + 1, (int32_t)((end - begin) / hdi_max(fits, HDI_PATCH_LEAST)));
     }
-    middle = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
-    return hdi_patches_range(x, begin, middle) < 0 ? h->e->status : hdi_patches_range(x, middle, end);
+    x->core = (end - begin - 1) / pieces + 1;
+    return x->to->task.h->e->status;
+}
+
+/* Rows from begin to end, in pieces. known: x->core is theirs. Where one exceeds the byte limit it is halved. */
+static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, int known) {
+    hdi_heat_call *h = x->to->task.h;
+    int32_t pieces, middle;
+    if (!known) x->core = x->best;
+    pieces = hdi_patch_pieces(x, end - begin);
+    if (pieces > 1 && pieces <= HDI_PATCH_FEW && !known) {
+        if (hdi_patch_size(x, begin, end) < 0) return h->e->status;
+        pieces = hdi_patch_pieces(x, end - begin);
+        known = 1;
+    }
+    if (pieces == 1) {
+        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0 ||
+            hdi_patch_find(x, begin, end, INT32_MAX) < 0) return h->e->status;
+        if (end - begin < 2 * HDI_PATCH_LEAST || end - begin < hdi_patch_fits(x, end - begin)) {
+            if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
+            if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+            hdi_error_clear(h->e);
+            hdi_local_free(h->heat);
+            x->each *= HDI_PATCH_MORE;
+            x->local = hdi_local_open(h->heat, h->e);
+            if (h->e->status < 0) return h->e->status;
+        }
+        pieces = 2;
+    }
+    middle = hdi_patch_halve(x, begin, end, pieces);
+    return hdi_patches_range(x, begin, middle, known) < 0 ? h->e->status
+                                                           : hdi_patches_range(x, middle, end, known);
 }
 
 /* Diagonals and traces by patches. */
@@ -21337,7 +21410,7 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     h->relative = 1;
     h->rep->reason = x->reason;
     hdi_keep_blocks(h->heat->ctx, 1);
-    (void)hdi_patches_range(x, 0, x->n);
+    (void)hdi_patches_range(x, 0, x->n, 0);
     hdi_local_free(h->heat);
     hdi_keep_blocks(h->heat->ctx, 0);
     h->rep->n_patches = x->done;

@@ -1555,6 +1555,8 @@ static void int_core(void) {
             to.mass = mass;
             to.D = D[part];
             to.ldd = (size_t)lap->n;
+            if (part && hdi_heat_analysed(h.heat, h.e) >= 0)
+                h.active = hdi_inverses_fronts(&h, hdi_diagonals_wanted(&to), &h.s);
             CHECK(hdi_diagonals_run(&h, &to) >= 0 && h.rep->error_bound < 1e-5);
             s = hdi_scope_begin(h.heat->ctx, h.e);
             if (part) {
