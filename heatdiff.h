@@ -222,10 +222,9 @@ typedef struct hd_context {
     uint64_t waits;             /* of the calling thread for others */
     hd_threads *threads;        /* running; NULL: none; not counted in bytes_in_use */
     int32_t n_holders;          /* objects made with this context */
-    /* During some calls large blocks that are freed wait for their next use: these, counted in bytes_in_use,
-     * or NULL; and 0 or 1 more than the most bytes without them. */
-    void *kept;
-    uint64_t keeps;
+    void *kept;                 /* freed blocks that wait for their next use; NULL: none */
+    uint64_t bytes_kept;        /* of bytes_in_use */
+    uint64_t keeps;             /* blocks wait: 1 or the most bytes without these; 0: none does */
 } hd_context;
 
 /* How many threads work for this context. */
@@ -1625,30 +1624,16 @@ static hd_status hdi_alloc_check(hd_context *ctx, size_t total, hd_error *e) {
     return e->status;
 }
 
-/* Bytes of a block, with what stands in front of it. */
-static uint64_t hdi_block_bytes(const void *block) {
-    uint64_t bytes;
-    memcpy(&bytes, (const char *)block - HDI_HEADER, sizeof bytes);
-    return bytes;
-}
-
-/* Bytes in use, without those of blocks that wait. */
-static double hdi_bytes_live(const hd_context *ctx) {
-    double bytes = (double)ctx->bytes_in_use;
-    void *const *at;
-    for (at = &ctx->kept; *at; at = (void *const *)*at) bytes -= (double)hdi_block_bytes(*at);
-    return bytes;
-}
-
-/* What the byte limit leaves. */
+/* What the byte limit leaves. Blocks that wait are given back for it. */
 static double hdi_bytes_left(const hd_context *ctx) {
-    return ctx->byte_limit ? (double)ctx->byte_limit - hdi_bytes_live(ctx) : HUGE_VAL;
+    const double live = (double)ctx->bytes_in_use - (double)ctx->bytes_kept;
+    return ctx->byte_limit ? (double)ctx->byte_limit - live : HUGE_VAL;
 }
 
 /* Ends long work before it begins, if its need of `more` bytes, which is sure, is above what the limit
  * leaves. what: of the text. */
 static HDI_NOINLINE hd_status hdi_need(hd_context *ctx, uint64_t more, const char *what, hd_error *e) {
-    const double all = (double)more + hdi_bytes_live(ctx);
+    const double all = (double)more + (double)(ctx->bytes_in_use - ctx->bytes_kept);
     if ((double)more <= hdi_bytes_left(ctx)) return e->status;
     hdi_fail(e, HD_ERR_MEMORY_LIMIT, what);
     hdi_text_add(e, " would bring the memory in use to ");
@@ -1671,62 +1656,65 @@ static void hdi_large_pages(char *raw, size_t total) {
 #endif
 }
 
+/* ---- blocks that wait ---- */
 /* Fresh memory takes a fifth of the time of work that is done piece by piece. While a context keeps blocks,
- * those that are large wait in a list when they are freed, each with the address of the next one in it. They
- * go to who asks for about as much. New blocks are a little larger than was asked for: pieces are nearly alike.
+ * those that are large wait in a list when they are freed, each with the address of the next one in it, and go
+ * to who asks for about as much. New blocks are a little larger than was asked for: pieces are nearly alike.
  * Blocks that wait add an eighth at most to the peak, and none where the byte limit has no room. */
 enum { HDI_KEEP_LEAST = 1 << 18 };
 
-/* Where the address stands of the smallest that has so many bytes, or else of the largest. Some wait. */
-static void **hdi_kept_find(hd_context *ctx, uint64_t bytes) {
-    void **best = &ctx->kept, **at;
-    for (at = (void **)*best; *at; at = (void **)*at) {
-        const uint64_t here = hdi_block_bytes(*at), least = hdi_block_bytes(*best);
-        if (least < bytes ? here > least : here >= bytes && here < least) best = at;
-    }
-    return best;
+/* Bytes of a block, with what stands in front of it. */
+static uint64_t hdi_block_bytes(const void *block) {
+    uint64_t bytes;
+    memcpy(&bytes, (const char *)block - HDI_HEADER, sizeof bytes);
+    return bytes;
 }
 
-/* Takes a block out of the list. */
-static void *hdi_kept_take(void **at) {
-    void *block = *at;
-    *at = *(void **)block;
+/* Takes out of the list the smallest block with so many bytes, `more` more at most; or with it UINT64_MAX the
+ * largest of all. NULL: there is none. */
+static void *hdi_kept_take(hd_context *ctx, uint64_t bytes, uint64_t more) {
+    void **best = NULL, **at, *block;
+    for (at = &ctx->kept; *at; at = (void **)*at) {
+        const uint64_t here = hdi_block_bytes(*at), before = best ? hdi_block_bytes(*best) : 0;
+        if (here < bytes || here - bytes > more) continue;
+        if (!best || (more < UINT64_MAX ? here < before : here > before)) best = at;
+    }
+    if (!best) return NULL;
+    block = *best;
+    ctx->bytes_kept -= hdi_block_bytes(block);
+    *best = *(void **)block;
     return block;
 }
 
 static void hdi_free_now(hd_context *ctx, void *block) {
-    const uint64_t total = hdi_block_bytes(block);
-    uint64_t offset;
+    uint64_t head[2];
     char *raw;
-    memcpy(&offset, (char *)block - HDI_HEADER + sizeof offset, sizeof offset);
-    raw = (char *)block - offset;
-    ctx->bytes_in_use -= total;
-    if (ctx->allocator.free) ctx->allocator.free(ctx->allocator.user, raw, (size_t)total);
+    memcpy(head, (char *)block - HDI_HEADER, sizeof head);
+    raw = (char *)block - head[1];
+    ctx->bytes_in_use -= head[0];
+    if (ctx->allocator.free) ctx->allocator.free(ctx->allocator.user, raw, (size_t)head[0]);
     else HEATDIFF_FREE(raw);
-}
-
-/* A block that waits, for so many bytes. NULL: none does; and so many were given back that a new one fits. */
-static void *hdi_kept_get(hd_context *ctx, uint64_t total) {
-    const uint64_t limit = ctx->byte_limit ? ctx->byte_limit : UINT64_MAX;
-    const uint64_t live = ctx->keeps ? (uint64_t)hdi_bytes_live(ctx) + total : 0;
-    uint64_t most;
-    if (ctx->keeps && ctx->keeps < live) ctx->keeps = live;
-    most = ctx->keeps + ctx->keeps / 8 < limit ? ctx->keeps + ctx->keeps / 8 : limit;
-    while (ctx->kept) {
-        void **at = hdi_kept_find(ctx, total);
-        const uint64_t bytes = hdi_block_bytes(*at);
-        if (bytes >= total && bytes - total <= total / 8) return hdi_kept_take(at);
-        if (ctx->bytes_in_use + total <= most) break;
-        at = hdi_kept_find(ctx, ctx->bytes_in_use + total - most);
-        hdi_free_now(ctx, hdi_kept_take(at));
-    }
-    return NULL;
 }
 
 /* Begins to keep blocks, or ends it. */
 static void hdi_keep_blocks(hd_context *ctx, int on) {
     ctx->keeps = (uint64_t)on;
-    while (!on && ctx->kept) hdi_free_now(ctx, hdi_kept_take(&ctx->kept));
+    while (!on && ctx->kept) hdi_free_now(ctx, hdi_kept_take(ctx, 0, UINT64_MAX));
+}
+
+/* A block that waits, for *total bytes. NULL: none does, but as many have been given back as a new one needs,
+ * of a few bytes more if there is room. */
+static void *hdi_kept_get(hd_context *ctx, size_t *total) {
+    const uint64_t limit = ctx->byte_limit ? ctx->byte_limit : UINT64_MAX, more = *total / 32;
+    const uint64_t live = ctx->bytes_in_use - ctx->bytes_kept + *total;
+    void *block = hdi_kept_take(ctx, *total, *total / 8);
+    if (block || !ctx->keeps) return block;
+    if (ctx->keeps < live) ctx->keeps = live;
+    while (ctx->kept && (ctx->bytes_in_use + *total > limit ||
+                         ctx->bytes_in_use + *total > ctx->keeps + ctx->keeps / 8))
+        hdi_free_now(ctx, hdi_kept_take(ctx, 0, UINT64_MAX));
+    if (*total >= HDI_KEEP_LEAST && ctx->bytes_in_use + *total + more <= limit) *total += (size_t)more;
+    return NULL;
 }
 
 /* [count] elements of size bytes, not cleared. NULL with e filled when there are none to have; e must be
@@ -1741,10 +1729,8 @@ static void *hdi_alloc(hd_context *ctx, uint64_t count, size_t size, hd_error *e
         return NULL;
     }
     total = (size_t)head[0];
-    kept = hdi_kept_get(ctx, total);
+    kept = hdi_kept_get(ctx, &total);
     if (kept) return kept;
-    if (ctx->keeps && total >= HDI_KEEP_LEAST &&
-        (!ctx->byte_limit || ctx->bytes_in_use + total + total / 32 <= ctx->byte_limit)) total += total / 32;
     if (hdi_alloc_check(ctx, total, e) < 0) return NULL;
     ctx->allocations++;
     raw = (char *)(ctx->allocator.alloc ? ctx->allocator.alloc(ctx->allocator.user, total)
@@ -1778,6 +1764,7 @@ static void hdi_free(hd_context *ctx, void *block) {
     }
     memcpy(block, &ctx->kept, sizeof ctx->kept);
     ctx->kept = block;
+    ctx->bytes_kept += hdi_block_bytes(block);
 }
 
 enum { HDI_SCOPE_MOST = 32 };
@@ -20897,54 +20884,50 @@ static void hdi_patch_walk(hdi_patches *x, int32_t *row, int32_t n, int last) {
     memcpy(row, x->queue, (size_t)n * sizeof *row);
 }
 
-/* Sets bit k of the marks of `first` of a piece's rows, those that come first along direction k. Places from
- * lo on are within `width`. */
-static void hdi_patch_across(const hdi_patches *x, const int32_t *row, int32_t n, int32_t first, int32_t k,
-                             const double *lo, double width) {
-    enum { BINS = 1024 };
-    const double *xyz = x->to->task.h->heat->source->xyz;
-    int32_t count[3 * BINS + 1] = {0}, *bin = x->queue, i, d, at = 0;
-    for (i = 0; i < n; i++) {
-        double place = 1;                        /* from 0 to 3 */
-        for (d = 0; d < 3; d++)
-            place += hdi_directions[k][d] * ((xyz[3 * (int64_t)row[i] + d] - lo[d]) / width);
-        bin[i] = (int32_t)(place * BINS);
-        count[bin[i]]++;
+/* Marks the rows of a piece by 1 and 2, `first` of them by 1: those that come first along a direction, or in
+ * order. Returns how many edges lead across, of a part of them. */
+static int64_t hdi_patch_sides(hdi_patches *x, const int32_t *row, int32_t n, int32_t first, int32_t way) {
+    enum { BINS = 1024, PART = 4 };
+    const hd_laplacian *lap = x->to->task.h->heat->source;
+    int32_t count[BINS + 1] = {0}, *bin = x->queue, turn, i, d, at = 0;
+    double lo = HUGE_VAL, hi = -HUGE_VAL;
+    int64_t p, edges = 0;
+    for (turn = 0; turn < 2; turn++) {
+        for (i = 0; i < n; i++) {
+            double place = way == HDI_DIRECTIONS ? i : 0;
+            for (d = 0; d < 3 && way < HDI_DIRECTIONS; d++)
+                place += hdi_directions[way][d] * lap->xyz[3 * (int64_t)row[i] + d];
+            lo = hdi_min(lo, place);
+            hi = hdi_max(hi, place);
+            if (turn) count[bin[i] = (int32_t)(hdi_quotient(place - lo, hi - lo) * BINS)]++;
+        }
     }
     for (; count[at] <= first; at++) first -= count[at];
-    for (i = 0; i < n; i++)
-        if (bin[i] < at || (bin[i] == at && first-- > 0)) x->mark[row[i]] |= 1 << k;
+    for (i = 0; i < n; i++) x->mark[row[i]] = bin[i] < at || (bin[i] == at && first-- > 0) ? 1 : 2;
+    for (i = 0; i < n; i += PART)
+        for (p = lap->L.row_ptr[row[i]]; p < lap->L.row_ptr[row[i] + 1]; p++)
+            edges += x->mark[lap->L.col[p]] == 3 - x->mark[row[i]];
+    return edges;
 }
 
 /* Cuts what is to be so many pieces in two: breadth-first from an end, or where edges are fewer across a
  * direction. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
-    const hd_laplacian *lap = x->to->task.h->heat->source;
     const int32_t n = end - begin, first = (int32_t)((int64_t)n * (pieces / 2) / pieces);
-    double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, width = 0;
-    int32_t *row = x->row + begin, edges[HDI_DIRECTIONS + 1] = {0}, best = HDI_DIRECTIONS, i, k, to[2] = {first, 0};
-    int64_t p;
+    int32_t *row = x->row + begin, best = HDI_DIRECTIONS, way, i, to[3] = {0, 0, first};
+    int64_t edges, least;
     hdi_patch_walk(x, row, n, 0);
     hdi_patch_walk(x, row, n, 1);
-    for (i = 0; i < n; i++) {
-        x->mark[row[i]] = 2 << HDI_DIRECTIONS | (i < first) << HDI_DIRECTIONS;
-        for (k = 0; k < 3 && lap->xyz; k++) {
-            lo[k] = hdi_min(lo[k], lap->xyz[3 * (int64_t)row[i] + k]);
-            hi[k] = hdi_max(hi[k], lap->xyz[3 * (int64_t)row[i] + k]);
-        }
+    least = hdi_patch_sides(x, row, n, first, best);
+    for (way = 0; way < HDI_DIRECTIONS && x->to->task.h->heat->source->xyz; way++) {
+        edges = hdi_patch_sides(x, row, n, first, way);
+        if (edges >= least) continue;
+        least = edges;
+        best = way;
     }
-    for (k = 0; k < 3; k++) width = hdi_max(width, hi[k] - lo[k]);
-    for (k = 0; k < HDI_DIRECTIONS && width > 0; k++) hdi_patch_across(x, row, n, first, k, lo, width);
-    for (i = 0; i < n && width > 0; i++) {
-        for (p = lap->L.row_ptr[row[i]]; p < lap->L.row_ptr[row[i] + 1]; p++) {
-            const int32_t there = x->mark[lap->L.col[p]], apart = there ? there ^ x->mark[row[i]] : 0;
-            for (k = 0; apart >> k; k++) edges[k] += apart >> k & 1;
-        }
-    }
-    for (k = 0; k < HDI_DIRECTIONS && width > 0; k++)
-        if (edges[k] < edges[best]) best = k;
+    (void)hdi_patch_sides(x, row, n, first, best);
     for (i = 0; i < n; i++) {
-        x->queue[to[x->mark[row[i]] >> best & 1]++] = row[i];
+        x->queue[to[x->mark[row[i]]]++] = row[i];
         x->mark[row[i]] = 0;
     }
     memcpy(row, x->queue, (size_t)n * sizeof *row);

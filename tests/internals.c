@@ -1243,6 +1243,7 @@ static void int_patches(void) {
             if (!lap->B)
                 for (q = 0; q < 2; q++) CHECK_MSG(fabs(traces[q] - sum[q]) < 1e-9 * sum[q], "%s: %g", specs[k], traces[q] - sum[q]);
             for (q = 0; q < 2; q++) CHECK(fabs(traces[q] - Z[q]) <= sure[q] + 1e-5 * Z[q]);
+            CHECK(hdi_patch_find(&x, 0, cut[1], INT32_MAX) >= 0);
             CHECK(hdi_patch_run(&x, 0, cut[1]) >= 0 && x.reach > reaches[r] && h.rep->error_local <= 100 * 1e-10);
             x.t = 1000 * t[0];                   /* all heat has left long before */
             x.reach = 1e-3;
@@ -1479,7 +1480,7 @@ static void int_patches_means(void) {
         to.Z = &Z;
         to.bound = &bound;
         CHECK(hdi_patches_open(&x, &to, 1) >= 0);
-        x.core = x.n / 3;
+        x.best = x.n / 3;
         CHECK(hdi_patches_run(&x) >= 0 && h.rep->n_patches > 2 && h.rep->n_touched == lap->n);
         CHECK_MSG(fabs(Z - 1) <= bound && bound < 1e-9, "%s: 1 and %g, bound %g", specs[k], Z - 1, bound);
         for (v = 0; v < lap->n; v++) CHECK(fabs(D[v] - lap->mass[lap->row[v]] / lap->component_mass[0]) < 1e-9 * D[v]);
