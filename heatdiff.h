@@ -13749,21 +13749,24 @@ static void hdi_batch_check(const hdi_elim *m, const hdi_batch *b, int32_t i, hd
 }
 
 /* Adds what the solutions x of pack i, or with i = -1 of the lone real pole, give to the further sums of k
- * lanes. */
-static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_lane *lane, int32_t k) {
-    const int64_t n = m->sym.n, pack = HDI_PACK, apart = i < 0 ? 1 : pack, stride = i < 0 ? pack : pack * k;
+ * right-hand sides. rows: of the first of them. */
+static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_extra *rows, int32_t k) {
+    const int64_t n = m->sym.n;
+    const int32_t width = i < 0 ? 1 : HDI_PACK, stride = i < 0 ? HDI_PACK : HDI_PACK * k;
     double coef[HDI_PACK];
-    int64_t j, q;
-    int32_t r, row;
-    for (r = 0; r < k; r++) {
-        const double *HDI_RESTRICT from = x + apart * r;
-        for (row = 0; row < lane[r].rows.n && !lane[r].skip; row++) {
-            const hd_c64 *w = lane[r].rows.weight + (int64_t)row * lane[r].rows.stride;
-            double *HDI_RESTRICT to = lane[r].rows.sum + row * n;
-            hdi_elim_coef(m, i, w, coef);
-            for (q = 0; q < apart && coef[q] == 0;) q++;
-            for (j = q < apart ? 0 : n; j < n; j++)
-                for (q = 0; q < apart; q++) to[j] += coef[q] * from[stride * j + q];
+    int32_t row, r, q;
+    int64_t j;
+    for (row = 0; row < rows->n; row++) {
+        hdi_elim_coef(m, i, rows->weight + (int64_t)row * rows->stride, coef);
+        for (q = 0; q < width && coef[q] == 0;) q++;
+        for (j = q < width ? 0 : n; j < n; j++) {
+            const double *from = x + stride * j;
+            double *to = rows->sum + row * n + j;
+            for (r = 0; r < k; r++, from += width, to += rows->n * n) {
+                double sum = 0;
+                for (q = 0; q < width; q++) sum += coef[q] * from[q];
+                *to += sum;
+            }
         }
     }
 }
@@ -13824,7 +13827,7 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
         hdi_batch_solve(m, b, i, rhs, k, active, NULL, ctx);
         hdi_batch_check(m, b, i, lane, k);
-        hdi_batch_extra(m, i, b->x, lane, k);
+        hdi_batch_extra(m, i, b->x, &lane->rows, k);
     }
     for (r = 0; r < k && HDI_HAS_LOCAL && b->rim; r++) {     /* a0 f and B u go on beyond the rim */
         const double f = m->set.a0 != 0 ? hdi_rim_residual(b->rim, m, 0, hdi_c(1, 0), lane[r].f, 1, 0) : 0;
@@ -21026,12 +21029,15 @@ static void hdi_patch_probe(void *arg, int64_t q, int32_t worker) {
 }
 
 /* Weights with which the set's poles make r(s) at time m, or after the times its integral until half of t, by
- * least squares. work: hdi_residues_room of the points, and three times as many numbers. */
+ * least squares; of the caller's sets y of one pole, real and imaginary parts in turn. work:
+ * hdi_residues_room of the points, and three times as many numbers. */
 static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, hd_c64 *w) {
     enum { N = HDI_RESOLVENT_POINTS };
     double *x = work, *u = x + N, *f = u + N;
     hd_rational fit = *set;
     int32_t i;
+    for (i = 0; i < set->n_poles; i++) w[i] = hdi_c(i == m / 2 && m % 2 == 0, i == m / 2 && m % 2 ? -1 : 0);
+    if (set->kind == HD_POLES_OWN) return;
     for (i = 0; i < N; i++) {
         const double s = (i + 0.5) / (double)N;
         x[i] = -2 * s / ((1 - s) * (1 - s));
@@ -21042,52 +21048,10 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
-/* What is measured at the first `count` vertices: means of squares over the random functions. */
-typedef struct hdi_patch_sums {
-    int32_t count;
-    const double *V;             /* of the caller's sets, else NULL */
-    double by;
-    const hd_c64 *weight;        /* [HDI_PATCH_ROWS][HD_MAX_POLES] */
-    double *u;                   /* [count][HDI_PATCH_PROBES][HDI_PATCH_ROWS] by these, as far as they are added */
-    double *sum;                 /* [poles or HDI_PATCH_ROWS][count] */
-} hdi_patch_sums;
-
-/* The caller's sets: adds squares of by x + v for the poles of pack i, or with i = -1 the lone real pole. */
-static void hdi_patch_squares(const hdi_elim *m, const hdi_patch_sums *a, int32_t i, const double *x) {
-    const int32_t first = i < 0 ? 0 : m->lone + 1 + 4 * i, n = m->sym.n, part = i < 0 ? 0 : HDI_PACK_LANES;
-    const int32_t here = i < 0 ? 1 : hdi_low32(m->set.n_poles - first, HDI_PACK_LANES);
-    int32_t j, r, p;
-    for (j = 0; j < n; j++) {
-        const int32_t v = m->lap->vertex[j];
-        for (r = 0; r < HDI_PATCH_PROBES; r++, x += i < 0 ? 1 : HDI_PACK) {
-            for (p = 0; p < here && v < a->count; p++) {
-                const double re = a->by * x[p] + a->V[(int64_t)r * n + v], im = part ? a->by * x[p + part] : 0;
-                a->sum[(int64_t)(first + p) * a->count + v] += (re * re + im * im) / (double)HDI_PATCH_PROBES;
-            }
-        }
-    }
-}
-
-/* Other sets: adds what the poles of pack i, or with i = -1 the lone real pole, make of the weighted sums. */
-static void hdi_patch_add(const hdi_elim *m, const hdi_patch_sums *a, int32_t i, const double *x) {
-    const int32_t width = i < 0 ? 1 : HDI_PACK;
-    double coef[HDI_PATCH_ROWS][HDI_PACK];
-    int32_t j, r, row, q;
-    for (row = 0; row < HDI_PATCH_ROWS; row++)
-        hdi_elim_coef(m, i, a->weight + row * HD_MAX_POLES, coef[row]);
-    for (j = 0; j < m->sym.n; j++) {
-        const int32_t v = m->lap->vertex[j];
-        double *u = a->u + (int64_t)v * (HDI_PATCH_PROBES * HDI_PATCH_ROWS);
-        for (r = 0; r < HDI_PATCH_PROBES; r++, x += width) {
-            for (row = 0; row < HDI_PATCH_ROWS && v < a->count; row++, u++)
-                for (q = 0; q < width; q++) *u += coef[row][q] * x[q];
-        }
-    }
-}
-
-/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and what is
- * not measured none down. The arrays lie where the update matrices were. */
-static hd_status hdi_patch_solve(hdi_elim *m, const hdi_patch_sums *a, const double *C, hd_error *e) {
+/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and only the
+ * first `count` vertices need one down. The arrays lie where the update matrices were. */
+static hd_status hdi_patch_solve(hdi_elim *m, int32_t count, const double *C, const hdi_extra *rows,
+                                 hd_error *e) {
     const int32_t n = m->sym.n;
     hdi_scope s = hdi_scope_begin(m->ctx, e);
     const double *rhs[HDI_PATCH_PROBES];
@@ -21101,32 +21065,33 @@ static hd_status hdi_patch_solve(hdi_elim *m, const hdi_patch_sums *a, const dou
     if (e->status < 0) return hdi_scope_end(&s);
     b.work = b.x + size;
     wanted = active + m->sym.n_super;
-    for (i = 0; i < n; i++)
-        if (m->lap->vertex[i] < a->count) hdi_sweep_touch(&m->sym, i, wanted);
-    for (q = 0; q < HDI_PATCH_PROBES; q++) {
-        rhs[q] = C + (int64_t)q * n;
-        for (i = 0; i < n; i++)
+    for (q = 0; q < HDI_PATCH_PROBES; q++) rhs[q] = C + (int64_t)q * n;
+    for (i = 0; i < n; i++) {
+        if (m->lap->vertex[i] < count) hdi_sweep_touch(&m->sym, i, wanted);
+        for (q = 0; q < HDI_PATCH_PROBES; q++)
             if (rhs[q][i] != 0) hdi_sweep_touch(&m->sym, i, active);
     }
+    memset(b.x, 0, size * sizeof *b.x);
     for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
         hdi_batch_solve(m, &b, i, rhs, HDI_PATCH_PROBES, active, wanted, m->ctx);
-        if (a->V) hdi_patch_squares(m, a, i, b.x);
-        else hdi_patch_add(m, a, i, b.x);
+        hdi_batch_extra(m, i, b.x, rows, HDI_PATCH_PROBES);
     }
     return hdi_scope_end(&s);
 }
 
-/* The sums of the poles of the set for time t, or of the weighted sums of hdi_patch_weights. */
-static double *hdi_patch_measure(const hdi_local *l, hdi_heat_call *in, int32_t count, double t,
+/* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
+ * first `count` vertices: rows [count] by hdi_patch_weights. */
+static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, int32_t count, double t,
                                  hd_rational *set, hdi_scope *s) {
     const uint64_t n = (uint64_t)l->n;
     const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
     hdi_elim *m = &in->heat->elim;
-    hd_c64 weight[HDI_PATCH_ROWS * HD_MAX_POLES];
-    hdi_patch_sums a = {count, NULL, 0, weight, NULL, NULL};
+    hd_c64 weight[2 * HD_MAX_POLES * HD_MAX_POLES];
+    hdi_extra rows = {HDI_PATCH_ROWS, HD_MAX_POLES, weight, NULL};
     hdi_patch_probes x;
     hdi_heat_call c;
-    int32_t own, q, v;
+    double *sum, by = in->heat->scale;
+    int32_t own, q, r, i;
     in->t = hdi_heat_scaled(in->heat, t);
     if (in->e->status < 0 || hdi_heat_set(in, set) < 0) return NULL;
     memset(&x, 0, sizeof x);
@@ -21138,25 +21103,26 @@ static double *hdi_patch_measure(const hdi_local *l, hdi_heat_call *in, int32_t 
     if (c.e->status >= 0) (void)hdi_direct_factors(&c, HDI_AFTER_INVERSE, 1);
     if (hdi_heat_end(&c) < 0) *in->e = c.rep->error;
     own = set->kind == HD_POLES_OWN;
+    if (own) rows.n = 2 * set->n_poles;
     x.local = l;
     x.row = m->lap->row;
     x.work = HDI_TAKE(s, double, 5 * HDI_PATCH_PROBES * n + room);
-    a.sum = HDI_TAKE_ZERO(s, double, (uint64_t)(own ? set->n_poles : HDI_PATCH_ROWS) * (uint64_t)count);
-    if (!own) a.u = HDI_TAKE_ZERO(s, double, (uint64_t)count * (HDI_PATCH_PROBES * HDI_PATCH_ROWS));
+    rows.sum = HDI_TAKE_ZERO(s, double, HDI_PATCH_PROBES * n * (uint64_t)rows.n);
+    sum = HDI_TAKE_ZERO(s, double, (uint64_t)count * (uint64_t)rows.n);
     if (in->e->status < 0) return NULL;
-    for (q = 0; q < HDI_PATCH_ROWS && !own; q++) hdi_patch_weights(set, q, x.work, weight + q * HD_MAX_POLES);
+    for (q = 0; q < rows.n; q++) hdi_patch_weights(set, q, x.work, weight + q * HD_MAX_POLES);
     hdi_parallel(m->ctx, HDI_PATCH_PROBES, hdi_patch_probe, &x);
     for (q = 0; q < HDI_PATCH_PROBES && in->e->status >= 0; q++) *in->e = x.e[q];
-    a.V = own ? x.V : NULL;
-    a.by = in->heat->scale * (own ? t : 1);
-    if (in->e->status < 0 || hdi_patch_solve(m, &a, x.C, in->e) < 0) return NULL;
-    for (v = 0; v < count && !own; v++) {
-        for (q = 0; q < HDI_PATCH_PROBES * HDI_PATCH_ROWS; q++, a.u++) {
-            const double y = a.by * *a.u;
-            a.sum[(int64_t)(q % HDI_PATCH_ROWS) * count + v] += y * (y / (double)HDI_PATCH_PROBES);
+    if (in->e->status < 0 || hdi_patch_solve(m, count, x.C, &rows, in->e) < 0) return NULL;
+    for (r = 0; r < HDI_PATCH_PROBES * rows.n; r++, rows.sum += n) {
+        const double *v = own && r % 2 == 0 ? x.V + (uint64_t)(r / rows.n) * n : NULL;
+        for (q = r % rows.n, i = 0; i < l->n; i++) {
+            const int32_t at = m->lap->vertex[i];
+            const double y = by * (own ? t : 1) * rows.sum[i] + (v ? v[at] : 0);
+            if (at < count) sum[(int64_t)q * count + at] += y * (y / (double)HDI_PATCH_PROBES);
         }
     }
-    return a.sum;
+    return sum;
 }
 
 /* r(s) at time s of t: log r is convex in 1/s, as it is linear for what comes from one distance. Where r
@@ -21186,19 +21152,17 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
-/* The largest that sums make of what is left out of entries of the first `count` vertices, over t^2: by the
+/* The largest that squares make of what is left out of entries of the first `count` vertices, over t^2: by the
  * set's poles, or NULL: by the integral. */
 static double hdi_patch_most(const double *sum, int32_t count, const hd_rational *set) {
-    const int32_t n = set ? set->n_poles : HDI_PATCH_ROWS;
     double most = 0, r[HDI_PATCH_ROWS] = {0};
     int32_t v, p;
     for (v = 0; v < count; v++) {
+        const double *own = sum + v;
         double all = 0;
-        for (p = 0; p < n; p++) {
-            const double own = sum[(int64_t)p * count + v];
-            if (set) all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * own;
-            else r[p] = hdi_max(r[p], sqrt(own));
-        }
+        for (p = 0; p < HDI_PATCH_ROWS && !set; p++, own += count) r[p] = hdi_max(r[p], sqrt(*own));
+        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)count)
+            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[count]);
         most = hdi_max(most, all);
     }
     return set ? most : hdi_patch_integral(r);
@@ -21227,7 +21191,7 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
     for (q = 0; q < times && x->local->rim.n > 0 && in->e->status >= 0; q++) {
         hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
         hd_rational set;
-        const double *sum = hdi_patch_measure(x->local, in, count, own ? in->ask.t[q] : x->t, &set, &s);
+        const double *sum = hdi_patch_squares(x->local, in, count, own ? in->ask.t[q] : x->t, &set, &s);
         double most = sum && !own ? x->t * x->t * hdi_patch_most(sum, count, NULL) : 0;
         for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
             if (own) most = hdi_patch_most(sum, count, times > 1 ? &set : heat->sets + i);
