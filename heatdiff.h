@@ -1670,19 +1670,11 @@ static uint64_t hdi_block_bytes(const void *block) {
     return bytes;
 }
 
-/* Takes out of the list the smallest block with so many bytes, `more` more at most; or with it UINT64_MAX the
- * largest of all. NULL: there is none. */
-static void *hdi_kept_take(hd_context *ctx, uint64_t bytes, uint64_t more) {
-    void **best = NULL, **at, *block;
-    for (at = &ctx->kept; *at; at = (void **)*at) {
-        const uint64_t here = hdi_block_bytes(*at), before = best ? hdi_block_bytes(*best) : 0;
-        if (here < bytes || here - bytes > more) continue;
-        if (!best || (more < UINT64_MAX ? here < before : here > before)) best = at;
-    }
-    if (!best) return NULL;
-    block = *best;
+/* Takes out of the list the block whose address stands at `at`. */
+static void *hdi_kept_take(hd_context *ctx, void **at) {
+    void *block = *at;
     ctx->bytes_kept -= hdi_block_bytes(block);
-    *best = *(void **)block;
+    *at = *(void **)block;
     return block;
 }
 
@@ -1699,7 +1691,7 @@ static void hdi_free_now(hd_context *ctx, void *block) {
 /* Begins to keep blocks, or ends it. */
 static void hdi_keep_blocks(hd_context *ctx, int on) {
     ctx->keeps = (uint64_t)on;
-    while (!on && ctx->kept) hdi_free_now(ctx, hdi_kept_take(ctx, 0, UINT64_MAX));
+    while (!on && ctx->kept) hdi_free_now(ctx, hdi_kept_take(ctx, &ctx->kept));
 }
 
 /* A block that waits, for *total bytes. NULL: none does, but as many have been given back as a new one needs,
@@ -1707,12 +1699,16 @@ static void hdi_keep_blocks(hd_context *ctx, int on) {
 static void *hdi_kept_get(hd_context *ctx, size_t *total) {
     const uint64_t limit = ctx->byte_limit ? ctx->byte_limit : UINT64_MAX, more = *total / 32;
     const uint64_t live = ctx->bytes_in_use - ctx->bytes_kept + *total;
-    void *block = hdi_kept_take(ctx, *total, *total / 8);
-    if (block || !ctx->keeps) return block;
+    void **at;
+    for (at = &ctx->kept; *at; at = (void **)*at) {
+        const uint64_t here = hdi_block_bytes(*at);
+        if (here >= *total && here <= *total + *total / 8) return hdi_kept_take(ctx, at);
+    }
+    if (!ctx->keeps) return NULL;
     if (ctx->keeps < live) ctx->keeps = live;
     while (ctx->kept && (ctx->bytes_in_use + *total > limit ||
                          ctx->bytes_in_use + *total > ctx->keeps + ctx->keeps / 8))
-        hdi_free_now(ctx, hdi_kept_take(ctx, 0, UINT64_MAX));
+        hdi_free_now(ctx, hdi_kept_take(ctx, &ctx->kept));
     if (*total >= HDI_KEEP_LEAST && ctx->bytes_in_use + *total + more <= limit) *total += (size_t)more;
     return NULL;
 }
