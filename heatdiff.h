@@ -20838,6 +20838,8 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
+/* Smaller pieces have to take less by this. */
+#define HDI_PATCH_GAIN 0.9
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 90
 /* Of a piece that did not fit they were so many times as many. */
@@ -20967,13 +20969,13 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
     const int32_t n = h->heat->source->n_active;
     const double wide = (double)h->heat->source->L.nnz / n;
     double least = HUGE_VAL;
-    int32_t begin = 0, end = x->n, middle;
-    while (hdi_patch_find(x, begin, end, INT32_MAX) >= 0) {
+    int32_t begin = 0, end = x->n, middle, level;
+    for (level = 0; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; level++) {
         const hdi_fill f = hdi_fill_guess(x->local->n, x->local->n * wide);
         const double core = end - begin, most = hdi_patch_fits(x, end - begin);
         const double cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / core;
         if (least == HUGE_VAL) x->fill = f;
-        if (most > core && cost < least) {
+        if (most > core && cost < HDI_PATCH_GAIN * least) {
             /* where the limit makes pieces small they have as many rows as fit */
             x->best = (int32_t)hdi_max(core, hdi_min(least < HUGE_VAL ? 0 : most, 1.9 * core));
             least = cost;
@@ -20983,8 +20985,8 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
         }
         if (end - begin < 2 * HDI_PATCH_LEAST) break;
         middle = hdi_patch_halve(x, begin, end, 2);
-        if (begin == 0) begin = middle;          /* pieces inside the mesh have margins all around */
-        else end = middle;
+        if (level / 2 % 2) end = middle;         /* pieces inside the mesh have margins all around */
+        else begin = middle;
     }
     if (least == HUGE_VAL) x->best = end - begin;
     x->core = x->best;
@@ -21298,17 +21300,19 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* How many rows a piece has in a region that is a few pieces large: the first of them has to fit. */
+/* How many rows a piece has in a region that is a few pieces large: the first of them has to fit, or of twice
+ * as many. */
 static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
-    int32_t pieces = hdi_patch_pieces(x, end - begin), tries, k;
-    for (tries = 0; tries < HDI_PATCH_FEW; tries++) {
-        int32_t middle = end;
-        double fits;
-        for (k = pieces; k > 1; k /= 2) middle = hdi_patch_halve(x, begin, middle, k);
+    const int32_t few = hdi_patch_pieces(x, end - begin);
+    int32_t pieces = few, last = 0, middle, k;
+    while (last < pieces) {
+        double most;
+        for (middle = end, k = pieces; k > 1; k /= 2) middle = hdi_patch_halve(x, begin, middle, k);
         if (hdi_patch_find(x, begin, middle, INT32_MAX) < 0) break;
-        fits = HDI_PATCH_SURE * hdi_patch_fits(x, middle - begin);
-        if (middle - begin <= hdi_max(fits, HDI_PATCH_LEAST)) break;
-        pieces = hdi_high32(pieces + 1, (int32_t)((end - begin) / hdi_max(fits, HDI_PATCH_LEAST)));
+        most = HDI_PATCH_SURE * hdi_patch_fits(x, middle - begin);
+        last = pieces;
+        if (middle - begin > most)
+            pieces = (int32_t)hdi_min(2 * few, hdi_max(pieces + 1, (end - begin) / hdi_max(most, 1)));
     }
     x->core = (end - begin - 1) / pieces + 1;
     return x->to->task.h->e->status;
