@@ -1658,9 +1658,9 @@ static void hdi_large_pages(char *raw, size_t total) {
 
 /* ---- blocks that wait ---- */
 /* Fresh memory takes a fifth of the time of work that is done piece by piece. While a context keeps blocks,
- * those that are large wait in a list when they are freed, each with the address of the next one in it, and go
- * to who asks for about as much. New blocks are a little larger than was asked for: pieces are nearly alike.
- * Blocks that wait add an eighth at most to the peak, and none where the byte limit has no room. */
+ * large ones that are freed wait in a list, each with the address of the next one in it. They go to who asks
+ * for about as much. New blocks are a little larger than was asked for: pieces are nearly alike. Blocks that
+ * wait add an eighth at most to the peak, and none where the byte limit has no room. */
 enum { HDI_KEEP_LEAST = 1 << 18 };
 
 /* Bytes of a block, with what stands in front of it. */
@@ -20950,7 +20950,8 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
     return hdi_local_grow(x->local, edge, hops, most, h->e);
 }
 
-/* How many rows a piece can have for factors of its patch to fit, by one that was found: margins stay as wide. */
+/* How many rows a piece can have for factors of its patch to fit, by one that was found: margins stay as
+ * wide. */
 static double hdi_patch_fits(const hdi_patches *x, int32_t rows) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
     const double n = x->local->n, stored = hdi_fill_guess(n, n * (double)L->nnz / L->n_rows).stored;
@@ -21046,8 +21047,8 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
-/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and only the
- * first `count` vertices need one down. The arrays lie where the update matrices were. */
+/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and only
+ * the first `count` vertices need one down. The arrays lie where the update matrices were. */
 static hd_status hdi_patch_solve(hdi_elim *m, int32_t count, const double *C, const hdi_extra *rows,
                                  hd_error *e) {
     const int32_t n = m->sym.n;
@@ -21150,8 +21151,8 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
-/* The largest that squares make of what is left out of entries of the first `count` vertices, over t^2: by the
- * set's poles, or NULL: by the integral. */
+/* The largest that squares make of what is left out of entries of the first `count` vertices, over t^2: by
+ * the set's poles, or NULL: by the integral. */
 static double hdi_patch_most(const double *sum, int32_t count, const hd_rational *set) {
     double most = 0, r[HDI_PATCH_ROWS] = {0};
     int32_t v, p;
@@ -21318,7 +21319,7 @@ static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
     return x->to->task.h->e->status;
 }
 
-/* Rows from begin to end, in pieces. known: x->core is theirs. Where one exceeds the byte limit it is halved. */
+/* Rows from begin to end, in pieces. known: x->core is theirs. One that exceeds the byte limit is halved. */
 static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, int known) {
     hdi_heat_call *h = x->to->task.h;
     int32_t pieces, middle;
