@@ -10343,7 +10343,8 @@ typedef struct hdi_inverse {
     const hdi_forms *forms;
     double *values;              /* [n_sets][entries or n] */
     int64_t stride;              /* from set to set */
-    double *scratch, *chunk;     /* [n_tasks][scratch_size] and one for the top; [chunks][chunk_size] */
+    int32_t *seat;               /* [n_tasks + 1] of subtrees that work, and of the top, in the scratch: */
+    double *scratch, *chunk;     /* [seats][scratch_size] and one for the top; [chunks][chunk_size] */
     uint64_t scratch_size, top_size, chunk_size;
 } hdi_inverse;
 
@@ -10822,7 +10823,7 @@ static void hdi_inverse_emit(const hdi_inverse *z, const hdi_front *w) {
 static hdi_front hdi_inverse_open(const void *arg, int32_t v, int32_t room) {
     const hdi_inverse *z = (const hdi_inverse *)arg;
     const hdi_factor *f = z->f;
-    hdi_front w = hdi_front_open(f, v, room, z->scratch + z->scratch_size * (size_t)room);
+    hdi_front w = hdi_front_open(f, v, room, z->scratch + z->scratch_size * (size_t)z->seat[room]);
     const int64_t n = hdi_least(w.p, HDI_PANEL);
     w.z = w.work;
     w.T = w.z + f->width * (f->sym->panel[v + 1] - f->sym->panel[v]);
@@ -10885,19 +10886,28 @@ static int hdi_inverse_part(const void *arg, const hdi_front *w, int64_t r0, int
 }
 
 /* The arrays that inverting factors of the given width takes. */
-static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, hdi_scope *keep) {
+static void hdi_inverse_take(hdi_inverse *z, const hdi_symbolic *s, int32_t width, const char *active,
+                             hdi_scope *keep) {
     const int32_t chunks = s->largest_front / HDI_INV_CHUNK + (int)HDI_PANEL / (int)HDI_TILE_ROWS + 2;
     uint64_t size;
-    int32_t v;
+    int32_t v, task = -1, seats = 0;
     memset(z, 0, sizeof *z);
+    z->active = active;
+    z->seat = HDI_TAKE_ZERO(keep, int32_t, s->n_tasks + 1);
     for (v = 0; v < s->n_super; v++) {
         const int64_t m = hdi_front_rows(s, v);
+        if (!hdi_inverse_works(z, v)) continue;
         size = hdi_inverse_scratch(m, hdi_front_pivots(s, v), s->panel[v + 1] - s->panel[v], width);
         if (s->n_top && size > z->top_size) z->top_size = size;
-        if (s->task_of[v] >= 0 && size > z->scratch_size) z->scratch_size = size;
+        if (s->task_of[v] < 0) continue;
+        if (size > z->scratch_size) z->scratch_size = size;
+        seats += s->task_of[v] != task;
+        task = s->task_of[v];
+        if (z->seat) z->seat[task] = seats - 1;
     }
+    if (z->seat) z->seat[s->n_tasks] = seats;
     z->chunk_size = hdi_inverse_buffer(width);
-    size = z->scratch_size * (uint64_t)s->n_tasks + z->top_size;
+    size = z->scratch_size * (uint64_t)seats + z->top_size;
     z->scratch = HDI_TAKE(keep, double, size);
     z->chunk = HDI_TAKE(keep, double, s->n_top ? z->chunk_size * (uint64_t)chunks : 1);
 }
@@ -10945,7 +10955,7 @@ static hd_status hdi_ldl_invert(hd_ldl *f, hdi_factor *of, int32_t n_matrices, d
     hdi_inverse z;
     memset(coef, 0, sizeof coef);
     for (q = 0; q < n_sets; q++) coef[q * of->width + hdi_pack_part(q, stride)] = 1;
-    hdi_inverse_take(&z, &f->sym, of->width, &s);
+    hdi_inverse_take(&z, &f->sym, of->width, NULL, &s);
     z.coef = coef;
     z.n_sets = n_sets;
     z.values = x;
@@ -13673,21 +13683,24 @@ static void hdi_batch_check(const hdi_elim *m, const hdi_batch *b, int32_t i, hd
 }
 
 /* Adds what the solutions x of pack i, or with i = -1 of the lone real pole, give to the further sums of k
- * lanes. */
-static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_lane *lane, int32_t k) {
-    const int64_t n = m->sym.n, pack = HDI_PACK, apart = i < 0 ? 1 : pack, stride = i < 0 ? pack : pack * k;
+ * right-hand sides. rows: of the first of them. */
+static void hdi_batch_extra(const hdi_elim *m, int32_t i, const double *x, const hdi_extra *rows, int32_t k) {
+    const int64_t n = m->sym.n;
+    const int32_t width = i < 0 ? 1 : HDI_PACK, stride = i < 0 ? HDI_PACK : HDI_PACK * k;
     double coef[HDI_PACK];
-    int64_t j, q;
-    int32_t r, row;
-    for (r = 0; r < k; r++) {
-        const double *HDI_RESTRICT from = x + apart * r;
-        for (row = 0; row < lane[r].rows.n && !lane[r].skip; row++) {
-            const hd_c64 *w = lane[r].rows.weight + (int64_t)row * lane[r].rows.stride;
-            double *HDI_RESTRICT to = lane[r].rows.sum + row * n;
-            hdi_elim_coef(m, i, w, coef);
-            for (q = 0; q < apart && coef[q] == 0;) q++;
-            for (j = q < apart ? 0 : n; j < n; j++)
-                for (q = 0; q < apart; q++) to[j] += coef[q] * from[stride * j + q];
+    int32_t row, r, q;
+    int64_t j;
+    for (row = 0; row < rows->n; row++) {
+        hdi_elim_coef(m, i, rows->weight + (int64_t)row * rows->stride, coef);
+        for (q = 0; q < width && coef[q] == 0;) q++;
+        for (j = q < width ? 0 : n; j < n; j++) {
+            const double *from = x + stride * j;
+            double *to = rows->sum + row * n + j;
+            for (r = 0; r < k; r++, from += width, to += rows->n * n) {
+                double sum = 0;
+                for (q = 0; q < width; q++) sum += coef[q] * from[q];
+                *to += sum;
+            }
         }
     }
 }
@@ -13706,12 +13719,13 @@ static void hdi_batch_extra_means(const hdi_elim *m, hdi_lane *lane) {
 
 /* Solves for pack i, or for i < 0 the lone real pole, where a single solution is spread into a block. */
 static void hdi_batch_solve(const hdi_elim *m, const hdi_batch *b, int32_t i, const double *const *rhs,
-                            int32_t k, const char *active, hd_context *ctx) {
+                            int32_t k, const char *active, const char *wanted, hd_context *ctx) {
     const int32_t wide = i >= 0 ? k : k > 1 ? 8 : 1;
     hdi_sweep z = hdi_sweep_open(i < 0 ? &m->real : m->pack + i, wide, b->x, b->work);
     int64_t j;
     z.rhs = rhs;
     z.active = active;
+    z.wanted = wanted;
     hdi_sweep_run(&z, ctx);
     for (j = m->sym.n; i < 0 && k == 1 && j-- > 0;) {
         const double x = b->x[j];
@@ -13745,9 +13759,9 @@ static void hdi_batch_run(const hdi_elim *m, const hdi_batch *b, hdi_lane *lane,
     }
     active = touched < 64 * (int64_t)k ? b->active : NULL;
     for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
-        hdi_batch_solve(m, b, i, rhs, k, active, ctx);
+        hdi_batch_solve(m, b, i, rhs, k, active, NULL, ctx);
         hdi_batch_check(m, b, i, lane, k);
-        hdi_batch_extra(m, i, b->x, lane, k);
+        hdi_batch_extra(m, i, b->x, &lane->rows, k);
     }
     for (r = 0; r < k && HDI_HAS_LOCAL && b->rim; r++) {     /* a0 f and B u go on beyond the rim */
         const double f = m->set.a0 != 0 ? hdi_rim_residual(b->rim, m, 0, hdi_c(1, 0), lane[r].f, 1, 0) : 0;
@@ -13997,7 +14011,7 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
     int32_t i, k, c;
     if (n == 0 || e->status < 0) return;
     s = hdi_scope_begin(m->ctx, e);
-    hdi_inverse_take(&z, &m->sym, width, &s);
+    hdi_inverse_take(&z, &m->sym, width, sums->active, &s);
     z.coef = coef = HDI_TAKE(&s, double, HDI_PACK * (uint64_t)sums->n_sets);
     if (forms) {
         room = hdi_forms_make(&q, &m->sym, width, &m->source->L, &s);
@@ -14006,7 +14020,6 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
     }
     z.n_sets = sums->n_sets;
     z.wanted = sums->wanted;
-    z.active = sums->active;
     z.forms = forms ? &q : NULL;
     z.values = sums->values;
     z.stride = sums->stride;
@@ -14026,7 +14039,7 @@ static void hdi_elim_invert(hdi_elim *m, hdi_factor *f, int32_t n, const hdi_eli
 static hd_status hdi_elim_inverse_diagonal(const hdi_elim *m, hdi_factor *f, const double *coef, double *out,
                                            hdi_scope *s) {
     hdi_inverse z;
-    hdi_inverse_take(&z, &m->sym, f->width, s);
+    hdi_inverse_take(&z, &m->sym, f->width, NULL, s);
     if (s->e->status < 0) return s->e->status;
     memset(out, 0, (size_t)m->sym.n * sizeof *out);
     z.coef = coef;
@@ -14114,9 +14127,9 @@ typedef enum hdi_after { HDI_AFTER_SOLVES, HDI_AFTER_BOUND, HDI_AFTER_INVERSE, H
 
 /* Bytes that the factors of a set take at their peak beyond those that are there: what they and
  * hdi_elim_bound keep, and the most that hdi_elim_bound, an inversion for so many sums, or solves take for
- * a while. solves: the bytes of these. */
+ * a while. solves: the bytes of these. active: of hdi_inverse. */
 static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_after after, int32_t n_sets,
-                              uint64_t solves, hd_error *e) {
+                              const char *active, uint64_t solves, hd_error *e) {
     const int32_t lone = hdi_set_lone(set), packs = hdi_set_packs(set);
     const int bound = after == HDI_AFTER_BOUND;
     hdi_scope kept = hdi_scope_counting();
@@ -14134,7 +14147,7 @@ static uint64_t hdi_elim_need(const hdi_elim *m, const hd_rational *set, hdi_aft
         if (bound ? i : !(i == 0 ? lone : packs)) continue;
         s.left = bound ? hdi_elim_room(m, packs) : 0;
         if (bound && !lone) hdi_factor_take(&f, NULL, &m->sym, 1, &s);
-        hdi_inverse_take(&z, &m->sym, width, &s);
+        hdi_inverse_take(&z, &m->sym, width, active, &s);
         if (!bound) (void)HDI_TAKE(&s, double, HDI_PACK * n_sets);
         if (after == HDI_AFTER_FORMS) s.bytes += hdi_forms_bytes(&m->sym, width, &m->source->L, m->ctx, e);
         if (most < s.bytes) most = s.bytes;
@@ -15410,12 +15423,12 @@ static uint64_t hdi_ground_need(const hdi_elim *m, const hdi_ground *g, int form
         hdi_factor_take(&f, NULL, &m->sym, 1, &held);
         (void)HDI_TAKE(&held, double, hdi_ground_size(m));
         (void)HDI_TAKE(&make, double, nnz);
-        hdi_inverse_take(&z, &m->sym, 1, &make);
+        hdi_inverse_take(&z, &m->sym, 1, NULL, &make);
     }
     if (forms && !g->formed) {
         hdi_factor_take(&f, NULL, &m->sym, HDI_PACK, &form);
         (void)HDI_TAKE(&form, double, nnz + (uint64_t)m->sym.n + hdi_sweep_size(&m->sym, 1, 1));
-        hdi_inverse_take(&z, &m->sym, HDI_PACK, &form);
+        hdi_inverse_take(&z, &m->sym, HDI_PACK, NULL, &form);
     }
     return held.bytes + (make.bytes > form.bytes ? make.bytes : form.bytes);
 }
@@ -17198,6 +17211,7 @@ typedef struct hdi_heat_call {
     const hdi_local *part;       /* on a part of the mesh: that part; the request is in terms of the whole */
     double most;                 /* its answers are stored if they leave out no more than this */
     int32_t core;                /* diagonals on a part: its first so many vertices count; 0: all */
+    const char *active;          /* for these the fronts to invert; NULL: all */
     const double *left;          /* what the part leaves out of each column of k_t, scaled; NULL: nothing */
     double left_out;             /* of the one under way */
     hdi_extra rows;              /* direct: further sums of every item, one after the other */
@@ -18042,7 +18056,7 @@ static HDI_COLD void hdi_direct_set(const hdi_heat_call *h, const hd_rational *s
     if (after == HDI_AFTER_BOUND) c->flops += (1 + HDI_INVERT - hdi_set_lone(set)) * f.flops;
     if (heat->elim.ctx) {
         const uint64_t solving = hdi_batches_need(heat, hdi_set_packs(set), hdi_high32(k, probes));
-        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, solving, h->e);
+        bytes = (double)hdi_elim_need(&heat->elim, set, after, n_sets, NULL, solving, h->e);
         if (hdi_heat_equal_asks(heat, h->t) && !heat->ground.traced)
             bytes = hdi_max(bytes, (double)hdi_ground_need(&heat->elim, &heat->ground, 0));
         /* the solves' arrays of one time stay while the next one is factorised */
@@ -18078,7 +18092,7 @@ static hd_status hdi_direct_factors(hdi_heat_call *h, hdi_after after, int32_t n
     if (hdi_heat_set(h, &set) < 0) return h->e->status;
     if (!hdi_elim_holds(m, &set, h->t)) {
         need = hdi_batches_need(h->heat, hdi_set_packs(&set), solves ? h->ask.k : 1);
-        need = hdi_elim_need(m, &set, after, n_sets, need, h->e);
+        need = hdi_elim_need(m, &set, after, n_sets, h->active, need, h->e);
         if (h->e->status < 0 ||
             hdi_need(h->heat->ctx, need, "factors of the poles, and solves or their inversion", h->e) < 0)
             return h->e->status;
@@ -18492,18 +18506,21 @@ static double hdi_local_apart(const hd_laplacian *lap, int32_t i, int32_t j) {
     return sqrt(hdi_dot3(d, d));
 }
 
-/* Adds one of the first rows. Lengths at it are multiplied by 1 where L is a Laplace operator for them, for
- * then sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
-static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
-    const hd_laplacian *lap = l->source;
-    hdi_reached at = {0, 0, row, row};
+/* What lengths at a row are multiplied by: 1 where L is a Laplace operator for them, for then
+ * sum_j |L_ij| |x_i - x_j|^2 = 4 B_ii on surfaces. */
+static double hdi_local_unit(const hd_laplacian *lap, int32_t row) {
     double sum = 0;
     int64_t p;
     for (p = lap->L.row_ptr[row]; p < lap->L.row_ptr[row + 1] && lap->xyz; p++) {
         const double edge = hdi_local_apart(lap, row, lap->L.col[p]);
         sum += fabs(lap->L.val[p]) * (edge * edge);
     }
-    at.unit = sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
+    return sqrt(hdi_quotient(4 * (lap->mass[row] > 0 ? lap->mass[row] : lap->b_diag[row]), sum));
+}
+
+/* Adds one of the first rows. Its unit is found where it is needed. */
+static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
+    const hdi_reached at = {0, -1, row, row};
     return hdi_local_put(l, at, e);
 }
 
@@ -18526,6 +18543,8 @@ static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t
             }
             for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
                 const int32_t there = l->place[lap->L.col[p]] - 1;
+                if (there >= 0 && l->at[there].way == 0) continue;
+                if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
                 at.row = lap->L.col[p];
                 at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
                 if (there < 0 && (at.way <= reach || level < hops)) {
@@ -20021,7 +20040,7 @@ static hd_status hdi_inverses_take(hdi_inverses *x, hdi_heat_call *h, const doub
     x->count = count;
     x->t = t;
     x->of.wanted = wanted;
-    x->of.active = h->core > 0 ? hdi_inverses_fronts(h, wanted, s) : NULL;
+    x->of.active = h->active;
     x->of.stride = wanted == HDI_WANT_ENTRIES ? sym->a_ptr[sym->n_super] : sym->n;
     x->set = HDI_TAKE_ZERO(s, hd_rational, count);
     x->slack = HDI_TAKE(s, double, count);
@@ -20378,6 +20397,12 @@ typedef struct hdi_diagonals {
     const int32_t *rows;         /* patches: those wanted; NULL: all */
 } hdi_diagonals;
 
+/* What is wanted of inversions. A full B needs entries beside the diagonal for that of K_t = k_t B. */
+static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
+    if (!to->task.h->heat->source->B || (to->mass == 0 && !to->Z)) return HDI_WANT_DIAGONAL;
+    return to->mass > 1 ? HDI_WANT_FORMS : HDI_WANT_ENTRIES;
+}
+
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hdi_diagonal *d) {
     const hd_rational *set = d->set;
@@ -20496,12 +20521,9 @@ static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double
     hdi_heat_call *h = to->task.h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_inverses own, *x = h->equal ? NULL : &own;
-    /* a full B needs entries beside the diagonal for that of K_t = k_t B */
-    const hdi_wanted wanted = !h->heat->source->B || (to->mass == 0 && !to->Z) ? HDI_WANT_DIAGONAL
-                              : to->mass > 1 ? HDI_WANT_FORMS : HDI_WANT_ENTRIES;
     h->relative = 1;
     *relative = 0;
-    if (x && hdi_inverses_take(x, h, t, count, wanted, HDI_SHARED_TOL, &s) >= 0)
+    if (x && hdi_inverses_take(x, h, t, count, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
         (void)hdi_inverses_run(h, x, &s);
     if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 0, one, relative);
     if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 1, one, relative);
@@ -20684,10 +20706,10 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
  * the poles' own residuals there are measured like that: with y_p = (t L + theta_p B) (..)^-1 e_x on the rim
  * the error of entry (x,x) is at most sum_p |a_p| |y_p|^2 / dist_p in the norm of B^-1. */
 
-/* Random functions, in all and at once; times where they are taken, over t; these and an integral. */
-enum { HDI_PATCH_PROBES = 8, HDI_PATCH_BLOCK = 4, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
+/* Random functions; times where they are taken, over t; these and an integral. */
+enum { HDI_PATCH_PROBES = HDI_LANES_BATCH, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
-enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
+enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
@@ -20698,8 +20720,14 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
+/* Smaller pieces have to take less by this. */
+#define HDI_PATCH_GAIN 0.9
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
-#define HDI_PATCH_BYTES 85
+#define HDI_PATCH_BYTES 90
+/* Of a piece that did not fit they were so many times as many. */
+#define HDI_PATCH_MORE 1.05
+/* Of those that would fit, for the others of a region need more. */
+#define HDI_PATCH_SURE 0.97
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
 #define HDI_PATCHES_FIT "factors would not fit the byte limit"
@@ -20709,7 +20737,8 @@ typedef struct hdi_patches {
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
     int32_t done;                /* pieces that are answered */
-    int32_t core;                /* pieces have so many rows at most */
+    int32_t best, core;          /* rows of a piece: for least work; where they fit as well */
+    double left;                 /* bytes for a patch */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
     double t, reach;             /* the last time, the caller's; margins are so many times as wide as usual */
@@ -20728,10 +20757,10 @@ static double hdi_patch_edge(const hdi_patches *x, int32_t begin, int32_t end) {
 }
 
 /* Cuts what is to be so many pieces in two, breadth-first from an end, which is the last row found from the
- * first one. The part with shorter edges comes first. Returns where the second begins. */
+ * first one. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
     const hd_csr *L = &x->to->task.h->heat->source->L;
-    const int32_t n = end - begin, middle = begin + (int32_t)((int64_t)n * (pieces / 2) / pieces);
+    const int32_t n = end - begin;
     int32_t *row = x->row + begin, *queue = x->queue, i, round, head, tail;
     int64_t p;
     for (round = 0; round < 2; round++) {
@@ -20746,9 +20775,7 @@ static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32
         }
         for (i = 0; i < n; i++) row[i] = queue[round ? i : n - 1 - i];
     }
-    if (hdi_patch_edge(x, begin, middle) > hdi_patch_edge(x, middle, end))
-        for (i = 0; i < n; i++) row[i] = queue[n - 1 - i];
-    return middle;
+    return begin + (int32_t)((int64_t)n * (pieces / 2) / pieces);
 }
 
 /* Finds a piece with its margin; stops beyond `most` rows. */
@@ -20763,6 +20790,19 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
     return hdi_local_grow(x->local, HDI_PATCH_REACH * radius, hops, most, h->e);
 }
 
+/* How many rows a piece can have for factors of its patch to fit, by one that was found: margins stay as
+ * wide. */
+static double hdi_patch_fits(const hdi_patches *x, int32_t rows) {
+    const hd_csr *L = &x->to->task.h->heat->source->L;
+    const double n = x->local->n, stored = hdi_fill_guess(n, n * (double)L->nnz / L->n_rows).stored;
+    const double side = sqrt(x->left / (x->each * stored) * n) - sqrt(n) + sqrt(rows);
+    return side > 0 ? side * side : 0;
+}
+
+static int32_t hdi_patch_pieces(const hdi_patches *x, int32_t rows) {
+    return hdi_high32(1, (int32_t)ceil((double)rows / x->core - 0.05));
+}
+
 /* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
  * all patches less those of the whole mesh. */
 static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
@@ -20770,59 +20810,61 @@ static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
     const int32_t n = h->heat->source->n_active;
     const double wide = (double)h->heat->source->L.nnz / n;
     double least = HUGE_VAL;
-    int32_t begin = 0, end = x->n, middle;
-    while (hdi_patch_find(x, begin, end, INT32_MAX) >= 0) {
+    int32_t begin = 0, end = x->n, middle, level;
+    for (level = 0; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; level++) {
         const hdi_fill f = hdi_fill_guess(x->local->n, x->local->n * wide);
-        double cost, more;
+        const double core = end - begin, most = hdi_patch_fits(x, end - begin);
+        const double cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / core;
         if (least == HUGE_VAL) x->fill = f;
-        cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / (end - begin);
-        more = hdi_bytes_left(h->heat->ctx) / (x->each * f.stored);
-        if (more > 1 && cost < least) {
-            /* where the limit makes pieces small they have as many rows as fit: margins stay as wide */
-            const double core = end - begin, margin = sqrt(x->local->n) - sqrt(core);
-            const double side = least < HUGE_VAL ? 0 : sqrt(more * x->local->n) - margin;
+        if (most > core && cost < HDI_PATCH_GAIN * least) {
+            /* where the limit makes pieces small they have as many rows as fit */
+            x->best = (int32_t)hdi_max(core, hdi_min(least < HUGE_VAL ? 0 : most, 1.9 * core));
             least = cost;
-            x->core = (int32_t)hdi_max(core, hdi_min(side * side, 1.9 * core));
             x->fill = f;
         } else if (least < HUGE_VAL) {
             break;
         }
         if (end - begin < 2 * HDI_PATCH_LEAST) break;
         middle = hdi_patch_halve(x, begin, end, 2);
-        if (begin == 0) begin = middle;          /* pieces inside the mesh have margins all around */
-        else end = middle;
+        if (level / 2 % 2) end = middle;         /* pieces inside the mesh have margins all around */
+        else begin = middle;
     }
-    if (least == HUGE_VAL) x->core = end - begin;
+    if (least == HUGE_VAL) x->best = end - begin;
+    x->core = x->best;
     return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
 }
 
-/* Random functions on the rim from number q on, as functionals C [n] each that k_s applies to: with c = L w
- * and c' = B w on the patch's side, k_s c + d/ds k_s c' = k_s (c - L v), v = B^-1 c'. V: these. work [4 n] */
-static hd_status hdi_patch_probes(const hdi_local *l, int32_t q, double *C, double *V, double *work,
-                                  hd_error *e) {
-    const hd_laplacian *lap = l->ball;
-    const hdi_rim *rim = &l->rim;
+/* Random functions on the rim, as functionals that k_s applies to: with c = L w and c' = B w on the patch's
+ * side, k_s c + d/ds k_s c' = k_s (c - L v), v = B^-1 c'. */
+typedef struct hdi_patch_probes {
+    const hdi_local *local;
+    const int32_t *row;          /* of vertices in the plan */
+    double *C, *V;               /* [HDI_PATCH_PROBES][n] c - L v by these rows; v by vertices */
+    double *work;                /* [HDI_PATCH_PROBES][5 n] */
+    hd_error e[HDI_PATCH_PROBES];
+} hdi_patch_probes;
+
+static void hdi_patch_probe(void *arg, int64_t q, int32_t worker) {
+    hdi_patch_probes *x = (hdi_patch_probes *)arg;
+    const hd_laplacian *lap = x->local->ball;
+    const hdi_rim *rim = &x->local->rim;
     const int64_t n = lap->n;
-    double *u = work, *rest = u + n;
-    const int32_t end = q + HDI_PATCH_BLOCK;
-    uint64_t seed;
+    double *C = x->C + q * n, *V = x->V + q * n, *c = x->work + 5 * q * n, *u = c + n;
     int32_t i;
-    memset(C, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *C);
-    memset(V, 0, HDI_PATCH_BLOCK * (size_t)n * sizeof *V);
-    for (; q < end && e->status >= 0; q++, C += n, V += n) {
-        memset(u, 0, (size_t)n * sizeof *u);
-        for (i = 0; i < rim->n_edges; i++) {
-            double w;
-            seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
-            w = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
-            C[rim->from[i]] += rim->l[i] * w;
-            u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
-        }
-        if (!rim->b || hdi_mass_solve(lap, HDI_PATCH_STOP, u, V, rest, e) < 0) continue;
-        hdi_pair_apply(lap, 1, 0, V, u);
-        for (i = 0; i < n; i++) C[i] -= u[i];
+    (void)worker;
+    memset(c, 0, 2 * (size_t)n * sizeof *c);
+    memset(V, 0, (size_t)n * sizeof *V);
+    for (i = 0; i < rim->n_edges; i++) {
+        uint64_t seed = (uint64_t)rim->to[i] * HDI_PATCH_PROBES + (uint64_t)q;
+        const double w = (hdi_random(&seed) < 0 ? -1 : 1) * sqrt(rim->weight[rim->to[i]]);
+        c[rim->from[i]] += rim->l[i] * w;
+        u[rim->from[i]] += (rim->b ? rim->b[i] : 0) * w;
     }
-    return e->status;
+    if (rim->b && hdi_mass_solve(lap, HDI_PATCH_STOP, u, V, u + n, x->e + q) >= 0) {
+        hdi_pair_apply(lap, 1, 0, V, u);
+        for (i = 0; i < n; i++) c[i] -= u[i];
+    }
+    for (i = 0; i < n; i++) C[x->row[i]] = c[i];
 }
 
 /* Weights with which the set's poles make r(s) at time m, or after the times its integral until half of t, by
@@ -20845,53 +20887,78 @@ static void hdi_patch_weights(const hd_rational *set, int32_t m, double *work, h
     for (i = 0; i < set->n_poles; i++) w[i] = hdi_cscale(-hdi_rat_count(set, i), fit.a[i]);
 }
 
-/* Adds the squares of by u + v, v [n] by vertices or NULL, to their means. */
-static void hdi_patch_add(const hd_laplacian *lap, double by, const double *u, const double *v, double *sum) {
-    int32_t i;
-    for (i = 0; i < lap->n; i++) {
-        const double y = by * u[i] + (v ? v[lap->vertex[i]] : 0);
-        sum[i] += y * (y / (double)HDI_PATCH_PROBES);
+/* Solves for the functions with all poles, and adds up. What is far from the rim needs no way up, and only
+ * the first `count` vertices need one down. The arrays lie where the update matrices were. */
+static hd_status hdi_patch_solve(hdi_elim *m, int32_t count, const double *C, const hdi_extra *rows,
+                                 hd_error *e) {
+    const int32_t n = m->sym.n;
+    hdi_scope s = hdi_scope_begin(m->ctx, e);
+    const double *rhs[HDI_PATCH_PROBES];
+    char *active = HDI_TAKE_ZERO(&s, char, 2 * (uint64_t)m->sym.n_super), *wanted;
+    uint64_t size;
+    hdi_batch b;
+    int32_t i, q;
+    s.left = hdi_elim_room(m, m->n_used);
+    if (s.left > 0) s.room = (char *)(void *)m->pack->work;
+    b.x = HDI_TAKE(&s, double, hdi_batch_size(m, HDI_PATCH_PROBES, &size));
+    if (e->status < 0) return hdi_scope_end(&s);
+    b.work = b.x + size;
+    wanted = active + m->sym.n_super;
+    for (q = 0; q < HDI_PATCH_PROBES; q++) rhs[q] = C + (int64_t)q * n;
+    for (i = 0; i < n; i++) {
+        if (m->lap->vertex[i] < count) hdi_sweep_touch(&m->sym, i, wanted);
+        for (q = 0; q < HDI_PATCH_PROBES; q++)
+            if (rhs[q][i] != 0) hdi_sweep_touch(&m->sym, i, active);
     }
+    memset(b.x, 0, size * sizeof *b.x);
+    for (i = m->lone >= 0 ? -1 : 0; i < m->n_used; i++) {
+        hdi_batch_solve(m, &b, i, rhs, HDI_PATCH_PROBES, active, wanted, m->ctx);
+        hdi_batch_extra(m, i, b.x, rows, HDI_PATCH_PROBES);
+    }
+    return hdi_scope_end(&s);
 }
 
 /* Means of squares, over the random functions, of what the poles of the set for time t make of them at the
- * patch's vertices: with rows [n] in elimination order by hdi_patch_weights. */
-static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, double t, hd_rational *set,
-                                 hdi_scope *s) {
-    const int32_t n = l->n;
+ * first `count` vertices: rows [count] by hdi_patch_weights. */
+static double *hdi_patch_squares(const hdi_local *l, hdi_heat_call *in, int32_t count, double t,
+                                 hd_rational *set, hdi_scope *s) {
+    const uint64_t n = (uint64_t)l->n;
     const uint64_t room = hdi_residues_room(HDI_RESOLVENT_POINTS, HD_MAX_POLES) + 3 * HDI_RESOLVENT_POINTS;
-    double *C = HDI_TAKE(s, double, 2 * HDI_PATCH_BLOCK * (uint64_t)n), *V = C ? C + HDI_PATCH_BLOCK * n : C;
-    double *work = HDI_TAKE(s, double, room), *sum = NULL, by;
-    int32_t *id = HDI_TAKE(s, int32_t, n), i, j, q, own;
-    hd_c64 *weight = HDI_TAKE(s, hd_c64, 2 * HD_MAX_POLES * HD_MAX_POLES);
-    hdi_terms terms[HDI_PATCH_BLOCK];
-    hdi_extra rows;
+    hdi_elim *m = &in->heat->elim;
+    hd_c64 weight[2 * HD_MAX_POLES * HD_MAX_POLES];
+    hdi_extra rows = {HDI_PATCH_ROWS, HD_MAX_POLES, weight, NULL};
+    hdi_patch_probes x;
     hdi_heat_call c;
+    double *sum, by = in->heat->scale;
+    int32_t own, q, r, i;
     in->t = hdi_heat_scaled(in->heat, t);
-    if (in->e->status < 0 || hdi_heat_analysed(in->heat, in->e) < 0 || hdi_heat_set(in, set) < 0) return NULL;
-    own = set->kind == HD_POLES_OWN;
-    by = in->heat->scale * (own ? t : 1);
-    rows.n = own ? 2 * set->n_poles : HDI_PATCH_ROWS;
-    rows.stride = HD_MAX_POLES;
-    rows.weight = weight;
-    rows.sum = HDI_TAKE(s, double, HDI_PATCH_BLOCK * (uint64_t)n * (uint64_t)hdi_high32(rows.n, 4));
-    sum = HDI_TAKE_ZERO(s, double, (uint64_t)n * (uint64_t)rows.n);
+    if (in->e->status < 0 || hdi_heat_set(in, set) < 0) return NULL;
+    memset(&x, 0, sizeof x);
+    x.C = HDI_TAKE(s, double, HDI_PATCH_PROBES * n);     /* before factors: values will need as much */
+    x.V = HDI_TAKE(s, double, HDI_PATCH_PROBES * n);
     if (in->e->status < 0) return NULL;
-    for (i = 0; i < n; i++) id[i] = i;
-    for (q = 0; q < HDI_PATCH_BLOCK; q++) {
-        const hdi_terms one = {n, 0, id, C + (int64_t)q * n};
-        terms[q] = one;
-    }
-    for (q = 0; q < rows.n; q++) hdi_patch_weights(set, q, work, weight + q * HD_MAX_POLES);
-    for (q = 0; q < HDI_PATCH_PROBES; q += HDI_PATCH_BLOCK) {
-        if (hdi_patch_probes(l, q, C, V, rows.sum, in->e) < 0) return NULL;
-        hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, HDI_PATCH_BLOCK, terms);
-        c.rows = rows;
-        if (hdi_columns_run(in, &c) < 0) return NULL;
-        for (j = 0; j < HDI_PATCH_BLOCK * rows.n; j++) {
-            const int32_t row = j % rows.n;
-            const double *v = own && row % 2 == 0 ? V + (int64_t)(j / rows.n) * n : NULL;
-            hdi_patch_add(in->heat->elim.lap, by, rows.sum + (int64_t)j * n, v, sum + (int64_t)row * n);
+    hdi_columns_begin(&c, in, HD_KERNEL_SYMMETRIC, set, 1, NULL);
+    c.active = in->active;
+    if (c.e->status >= 0) (void)hdi_direct_factors(&c, HDI_AFTER_INVERSE, 1);
+    if (hdi_heat_end(&c) < 0) *in->e = c.rep->error;
+    own = set->kind == HD_POLES_OWN;
+    if (own) rows.n = 2 * set->n_poles;
+    x.local = l;
+    x.row = m->lap->row;
+    x.work = HDI_TAKE(s, double, 5 * HDI_PATCH_PROBES * n + room);
+    rows.sum = HDI_TAKE_ZERO(s, double, HDI_PATCH_PROBES * n * (uint64_t)rows.n);
+    sum = HDI_TAKE_ZERO(s, double, (uint64_t)count * (uint64_t)rows.n);
+    if (in->e->status < 0) return NULL;
+    for (q = 0; q < rows.n; q++) hdi_patch_weights(set, q, x.work, weight + q * HD_MAX_POLES);
+    hdi_parallel(m->ctx, HDI_PATCH_PROBES, hdi_patch_probe, &x);
+    for (q = 0; q < HDI_PATCH_PROBES && in->e->status >= 0; q++) *in->e = x.e[q];
+    if (in->e->status < 0 || hdi_patch_solve(m, count, x.C, &rows, in->e) < 0) return NULL;
+    for (r = 0; r < HDI_PATCH_PROBES * rows.n; r++, rows.sum += n) {
+        const double *v = own && r % 2 == 0 ? x.V + (uint64_t)(r / rows.n) * n : NULL;
+        for (q = r % rows.n, i = 0; i < l->n; i++) {
+            const int32_t at = m->lap->vertex[i];
+            const double y = by * (own ? t : 1) * rows.sum[i] + (v ? v[at] : 0);
+            if (at < count) sum[(int64_t)q * count + at] += y * (y / (double)HDI_PATCH_PROBES);
         }
     }
     return sum;
@@ -20924,20 +20991,17 @@ static double hdi_patch_integral(const double *r) {
     return early * early + 2 * mixed;
 }
 
-/* The largest that rows of squares make of what is left out of entries of the first `count` vertices, over
- * t^2: by the set's poles, or NULL: by the integral. */
-static double hdi_patch_most(const hdi_heat_call *in, const double *sum, int32_t count,
-                             const hd_rational *set) {
-    const hd_laplacian *lap = in->heat->elim.lap;
+/* The largest that squares make of what is left out of entries of the first `count` vertices, over t^2: by
+ * the set's poles, or NULL: by the integral. */
+static double hdi_patch_most(const double *sum, int32_t count, const hd_rational *set) {
     double most = 0, r[HDI_PATCH_ROWS] = {0};
-    int32_t i, p;
-    for (i = 0; i < lap->n; i++) {
-        const double *own = sum + i;
+    int32_t v, p;
+    for (v = 0; v < count; v++) {
+        const double *own = sum + v;
         double all = 0;
-        if (lap->vertex[i] >= count) continue;
-        for (p = 0; p < HDI_PATCH_ROWS && !set; p++) r[p] = hdi_max(r[p], sqrt(own[(int64_t)p * lap->n]));
-        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)lap->n)
-            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[lap->n]);
+        for (p = 0; p < HDI_PATCH_ROWS && !set; p++, own += count) r[p] = hdi_max(r[p], sqrt(*own));
+        for (p = 0; set && p < set->n_poles; p++, own += 2 * (int64_t)count)
+            all += hdi_pole_size(set, p) / hdi_pole_distance(set->theta[p]) * (own[0] + own[count]);
         most = hdi_max(most, all);
     }
     return set ? most : hdi_patch_integral(r);
@@ -20958,16 +21022,18 @@ static hd_status hdi_patch_off(const hdi_patches *x, hdi_heat_call *in, int32_t 
     int32_t count = core, i, q;
     int64_t p;
     memset(off, 0, (size_t)columns * sizeof *off);
+    if (hdi_heat_analysed(in->heat, in->e) < 0) return in->e->status;
+    in->active = hdi_inverses_fronts(in, hdi_diagonals_wanted(x->to), &in->s);
     for (i = 0; i < core && lap->B; i++)
         for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++)
             count = hdi_high32(count, lap->L.col[p] + 1);
     for (q = 0; q < times && x->local->rim.n > 0 && in->e->status >= 0; q++) {
         hdi_scope s = hdi_scope_begin(heat->ctx, in->e);
         hd_rational set;
-        const double *sum = hdi_patch_squares(x->local, in, own ? in->ask.t[q] : x->t, &set, &s);
-        double most = sum && !own ? x->t * x->t * hdi_patch_most(in, sum, count, NULL) : 0;
+        const double *sum = hdi_patch_squares(x->local, in, count, own ? in->ask.t[q] : x->t, &set, &s);
+        double most = sum && !own ? x->t * x->t * hdi_patch_most(sum, count, NULL) : 0;
         for (i = own ? q : 0; sum && i < (times > 1 ? q + 1 : columns); i++) {
-            if (own) most = hdi_patch_most(in, sum, count, times > 1 ? &set : heat->sets + i);
+            if (own) most = hdi_patch_most(sum, count, times > 1 ? &set : heat->sets + i);
             off[i] = hdi_bound_of(HDI_PATCH_SAFETY * most / lap->b_ratio) / heat->scale;
         }
         (void)hdi_scope_end(&s);
@@ -21019,16 +21085,17 @@ static HDI_COLD hd_status hdi_patch_once(hdi_patches *x, int32_t core, double wa
     return hdi_scope_end(&s);
 }
 
-/* A piece. Its margin grows until as little is left out as of columns. */
+/* A piece, which has been found. Its margin grows until as little is left out as of columns. */
 static hd_status hdi_patch_run(hdi_patches *x, int32_t begin, int32_t end) {
     hdi_heat_call *h = x->to->task.h;
     hd_report rep;
     int32_t tries;
-    for (tries = 1; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; tries++) {
+    for (tries = 1;; tries++) {
         if (hdi_patch_once(x, end - begin, tries < HDI_LOCAL_TRIES ? x->wanted : HUGE_VAL, &rep) < 0)
             return h->e->status;
         if (rep.error_local <= x->wanted || tries == HDI_LOCAL_TRIES) break;
         x->reach = hdi_local_more(h->heat, x->reach, tries - 1, rep.error_local / x->wanted);
+        if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return h->e->status;
     }
     rep.method = HD_METHOD_LOCAL;
     rep.reason = h->rep->reason;
@@ -21047,7 +21114,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     memset(x, 0, sizeof *x);
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
-    x->core = x->n;
+    x->best = x->core = x->n;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
     x->reach = hdi_local_reach(h->heat, h->heat->n_sets);
@@ -21058,6 +21125,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     if (h->e->status < 0 || hdi_heat_set_of(h, HDI_DEGREE_DIRECT, &set) < 0) return h->e->status;
     x->each = HDI_PATCH_BYTES * (1 + hdi_set_packs(&set));
     x->queue = x->row + x->n;
+    x->left = hdi_bytes_left(h->heat->ctx);
     for (q = 0; q < x->n; q++) x->row[q] = to->rows ? to->rows[q] : q;
     return HD_OK;
 }
@@ -21073,28 +21141,52 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* Rows from begin to end, in pieces. Where edges are short patches need most: they come first, and a limit
- * that is too small is soon found. A piece that exceeds it is halved; those next to it are small at once, and
- * grow with the distance from it. */
-static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end) {
-    hdi_heat_call *h = x->to->task.h;
-    const int32_t core = x->core;
-    int32_t middle;
-    if (end - begin <= core) {
-        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0) return h->e->status;
-        if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
-        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < (x->done > 0 ? 2 : 2 * HDI_PATCH_LEAST))
-            return h->e->status;
-        hdi_error_clear(h->e);
-        hdi_local_free(h->heat);
-        x->local = hdi_local_open(h->heat, h->e);
-        if (h->e->status < 0) return h->e->status;
-        x->core = (end - begin + 1) / 2;
+/* How many rows a piece has in a region that is a few pieces large: the first of them has to fit, or of twice
+ * as many. */
+static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
+    const int32_t few = hdi_patch_pieces(x, end - begin);
+    int32_t pieces = few, last = 0, middle, k;
+    while (last < pieces) {
+        double most;
+        for (middle = end, k = pieces; k > 1; k /= 2) middle = hdi_patch_halve(x, begin, middle, k);
+        if (hdi_patch_find(x, begin, middle, INT32_MAX) < 0) break;
+        most = HDI_PATCH_SURE * hdi_patch_fits(x, middle - begin);
+        last = pieces;
+        if (middle - begin > most)
+            pieces = (int32_t)hdi_min(2 * few, hdi_max(pieces + 1, (end - begin) / hdi_max(most, 1)));
     }
-    middle = hdi_patch_halve(x, begin, end, hdi_high32((end - begin - 1) / x->core + 1, 2));
-    if (hdi_patches_range(x, begin, middle) >= 0) (void)hdi_patches_range(x, middle, end);
-    x->core = x->core > core / 2 ? core : 2 * x->core;
-    return h->e->status;
+    x->core = (end - begin - 1) / pieces + 1;
+    return x->to->task.h->e->status;
+}
+
+/* Rows from begin to end, in pieces. known: x->core is theirs. One that exceeds the byte limit is halved. */
+static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, int known) {
+    hdi_heat_call *h = x->to->task.h;
+    int32_t pieces, middle;
+    if (!known) x->core = x->best;
+    pieces = hdi_patch_pieces(x, end - begin);
+    if (pieces > 1 && pieces <= HDI_PATCH_FEW && !known) {
+        if (hdi_patch_size(x, begin, end) < 0) return h->e->status;
+        pieces = hdi_patch_pieces(x, end - begin);
+        known = 1;
+    }
+    if (pieces == 1) {
+        if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0 ||
+            hdi_patch_find(x, begin, end, INT32_MAX) < 0) return h->e->status;
+        if (end - begin < 2 * HDI_PATCH_LEAST || end - begin < hdi_patch_fits(x, end - begin)) {
+            if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
+            if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+            hdi_error_clear(h->e);
+            hdi_local_free(h->heat);
+            x->each *= HDI_PATCH_MORE;
+            x->local = hdi_local_open(h->heat, h->e);
+            if (h->e->status < 0) return h->e->status;
+        }
+        pieces = 2;
+    }
+    middle = hdi_patch_halve(x, begin, end, pieces);
+    return hdi_patches_range(x, begin, middle, known) < 0 ? h->e->status
+                                                           : hdi_patches_range(x, middle, end, known);
 }
 
 /* Diagonals and traces by patches. */
@@ -21106,7 +21198,7 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     memset(h->rep, 0, sizeof *h->rep);
     h->relative = 1;
     h->rep->reason = x->reason;
-    (void)hdi_patches_range(x, 0, x->n);
+    (void)hdi_patches_range(x, 0, x->n, 0);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
     for (q = 0; q < hdi_diagonals_count(h) && to->D && h->e->status >= 0; q++)

@@ -1250,6 +1250,7 @@ static void int_patches(void) {
             if (!lap->B)
                 for (q = 0; q < 2; q++) CHECK_MSG(fabs(traces[q] - sum[q]) < 1e-9 * sum[q], "%s: %g", specs[k], traces[q] - sum[q]);
             for (q = 0; q < 2; q++) CHECK(fabs(traces[q] - Z[q]) <= sure[q] + 1e-5 * Z[q]);
+            CHECK(hdi_patch_find(&x, 0, cut[1], INT32_MAX) >= 0);
             CHECK(hdi_patch_run(&x, 0, cut[1]) >= 0 && x.reach > reaches[r] && h.rep->error_local <= 100 * 1e-10);
             x.t = 1000 * t[0];                   /* all heat has left long before */
             x.reach = 1e-3;
@@ -1486,7 +1487,7 @@ static void int_patches_means(void) {
         to.Z = &Z;
         to.bound = &bound;
         CHECK(hdi_patches_open(&x, &to, 1) >= 0);
-        x.core = x.n / 3;
+        x.best = x.n / 3;
         CHECK(hdi_patches_run(&x) >= 0 && h.rep->n_patches > 2 && h.rep->n_touched == lap->n);
         CHECK_MSG(fabs(Z - 1) <= bound && bound < 1e-9, "%s: 1 and %g, bound %g", specs[k], Z - 1, bound);
         for (v = 0; v < lap->n; v++) CHECK(fabs(D[v] - lap->mass[lap->row[v]] / lap->component_mass[0]) < 1e-9 * D[v]);
@@ -1562,6 +1563,8 @@ static void int_core(void) {
             to.mass = mass;
             to.D = D[part];
             to.ldd = (size_t)lap->n;
+            if (part && hdi_heat_analysed(h.heat, h.e) >= 0)
+                h.active = hdi_inverses_fronts(&h, hdi_diagonals_wanted(&to), &h.s);
             CHECK(hdi_diagonals_run(&h, &to) >= 0 && h.rep->error_bound < 1e-5);
             s = hdi_scope_begin(h.heat->ctx, h.e);
             if (part) {
