@@ -1482,9 +1482,9 @@ static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out)
 
 /* Length without squares that underflow or overflow. */
 static HDI_INLINE double hdi_norm3(const double *a) {
-    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
+    const double s = hdi_dot3(a, a), m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
-    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
+    if ((s > 1e-280 && s < 1e280) || m == 0) return sqrt(s);
     b[0] = a[0] / m;
     b[1] = a[1] / m;
     b[2] = a[2] / m;
@@ -2431,10 +2431,7 @@ static HDI_INLINE void hdi_rows_sort(uint64_t *a, int64_t n, int width) {
 }
 
 static void hdi_sort_keys(uint64_t *a, int64_t n) { hdi_rows_sort(a, n, 1); }
-static void hdi_sort_pairs(hdi_pair *a, int64_t n) {
-    if (n <= HDI_SHORT_LIST) hdi_rows_insert((uint64_t *)(void *)a, n, 2);
-    else hdi_rows_sort((uint64_t *)(void *)a, n, 2);
-}
+static void hdi_sort_pairs(hdi_pair *a, int64_t n) { hdi_rows_sort((uint64_t *)(void *)a, n, 2); }
 
 /* Puts the k-th row in its place, smaller ones before it, larger ones behind. */
 static HDI_INLINE void hdi_select(uint64_t *a, int64_t n, int64_t k, int width, int by) {
@@ -3886,7 +3883,7 @@ static hd_status hdi_coordinates_check(const double *xyz, int32_t n, int queries
     int64_t i;
     for (i = 0; i < hdi_triple(n); i++) {
         const int lost = !hdi_finite(xyz[i]);
-        if (fabs(xyz[i]) <= HDI_RANGE && !lost) continue;
+        if (hdi_bits(xyz[i]) << 1 <= hdi_bits(HDI_RANGE) << 1) continue;
         hdi_fail_face(e, lost ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, "a coordinate ", -1, i / 3, xyz[i]);
         if (queries) {
             e->row = e->vertex;
@@ -3903,15 +3900,12 @@ static hd_status hdi_coordinates_check(const double *xyz, int32_t n, int queries
 /* Besides, points are all in one place, or spread over 1e-100 at least. */
 static hd_status hdi_points_check(const double *xyz, int32_t n, hd_error *e) {
     double size = 0;
-    int32_t i, at = 0;
-    int q;
+    int64_t i, at = 0;
     if (hdi_coordinates_check(xyz, n, 0, e) < 0) return e->status;
-    for (i = 0; i < n; i++) {
-        for (q = 0; q < 3; q++) {
-            const double away = fabs(hdi_at3(xyz, i)[q] - xyz[q]);
-            if (away > size) at = i;
-            size = hdi_max(size, away);
-        }
+    for (i = 0; i < hdi_triple(n); i++) {
+        const double away = fabs(xyz[i] - xyz[i % 3]);
+        if (away > size) at = i / 3;
+        size = hdi_max(size, away);
     }
     if (size == 0 || hdi_in_range(size)) return HD_OK;
     return hdi_fail_face(e, HD_ERR_ARGUMENT, "all points are within 1e-100 of each other", -1, at, size);
@@ -4254,8 +4248,7 @@ static HDI_INLINE int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
 
 static HDI_INLINE int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
     const int32_t f = hdi_corner_face(mesh, c);
-    const int64_t begin = hdi_face_begin(mesh, f);
-    return c + 1 < begin + hdi_face_size(mesh, f) ? c + 1 : begin;
+    return c + 1 < hdi_face_begin(mesh, f) + hdi_face_size(mesh, f) ? c + 1 : hdi_face_begin(mesh, f);
 }
 
 /* ---- what is refused ---- */
@@ -4422,17 +4415,16 @@ static void hdi_length_cots(const double *len, double area, double *cot) {
 /* Area and cotangents of the triangle with corners v; 0, and no cotangents, if it has none. */
 static HDI_INLINE double hdi_triangle_measure(const double *xyz, const int32_t *v, double *cot) {
     const double *const p[3] = {hdi_at3(xyz, v[0]), hdi_at3(xyz, v[1]), hdi_at3(xyz, v[2])};
-    double edge[3][3], cross[3], twice, scale;   /* edges opposite to the corners */
+    double edge[3][3], cross[3], twice;          /* edges opposite to the corners */
     hdi_sub3(p[2], p[1], edge[0]);
     hdi_sub3(p[0], p[2], edge[1]);
     hdi_sub3(p[1], p[0], edge[2]);
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
     if (!(twice > 0)) return 0;
-    scale = -1 / twice;
-    cot[0] = scale * hdi_dot3(edge[1], edge[2]);
-    cot[1] = scale * hdi_dot3(edge[2], edge[0]);
-    cot[2] = scale * hdi_dot3(edge[0], edge[1]);
+    cot[0] = -1 / twice * hdi_dot3(edge[1], edge[2]);
+    cot[1] = -1 / twice * hdi_dot3(edge[2], edge[0]);
+    cot[2] = -1 / twice * hdi_dot3(edge[0], edge[1]);
     return twice / 2;
 }
 
@@ -4575,7 +4567,7 @@ static int64_t hdi_block_size(int64_t n) {
 /* What is counted of faces and edges. */
 enum hdi_counted {
     HDI_USED, HDI_REPEATED_CORNER, HDI_ZERO_AREA, HDI_REPEATED_FACE,
-    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_LOOPS, HDI_COUNTED
+    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_COUNTED
 };
 
 /* What a block of faces or of vertices adds to the report. */
@@ -4797,8 +4789,8 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (f = 0; f < m; f++) {
         low[f] = mesh->n;                        /* of a face without corners */
-        for (k = 0; k < hdi_face_size(mesh, f); k++)
-            low[f] = hdi_low32(low[f], v[hdi_face_begin(mesh, f) + k]);
+        for (k = 0, n = hdi_face_begin(mesh, f); k < hdi_face_size(mesh, f); k++)
+            low[f] = hdi_low32(low[f], v[n + k]);
     }
     hdi_group(low, m, mesh->n + 1, at, face);
     for (f = 0, n = 0; f < m; f++, n += k) {
@@ -5487,9 +5479,9 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
  * listed there. */
 
 /* ---- rows from corners ----
- * Every mesh is faces with k corners and an element matrix each. What a row of the pair has behind its diagonal
- * is a sum over the corners at its vertex, in the order of the faces, and any thread can fill any row. Then one
- * thread copies it into the later rows: L is symmetric to the last bit. */
+ * Every mesh is faces with k corners and an element matrix each. A row of the pair is a sum over the corners
+ * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
+ * order, so that L is symmetric to the last bit, and any thread can fill any row. */
 
 /* Is B the identity? */
 static int hdi_is_plain(hd_laplacian_kind kind) {
@@ -5504,11 +5496,9 @@ typedef struct hdi_entry {
     int32_t sides[2];           /* of faces: those that run from the vertex to it, and back */
 } hdi_entry;
 
-/* A vertex and the later ones that it shares something with, and earlier ones that have no row. */
+/* A vertex and the others that it shares something with. */
 typedef struct hdi_ring {
     int32_t n;
-    hd_laplacian_kind kind;     /* of the mass */
-    const int32_t *row;         /* [vertices] their rows; NULL: none is held, or rows are not asked for */
     double mass;                /* that the faces give the vertex */
     uint32_t base;              /* grows from vertex to vertex, so that places need not be cleared */
     uint32_t *place;            /* [vertices] base plus the number of its entry; below base: it has none */
@@ -5526,9 +5516,8 @@ typedef struct hd_moving {
     int32_t strands;
     hdi_ring ring[HDI_STRANDS];
     int counting;               /* the entries of rows are counted */
-    int32_t *count;             /* [n] entries of a row, -1: the vertex has no face; then those behind the diagonal */
-    int32_t *work;              /* [n] */
-    char *border;               /* [n] not 0: at an edge with one face */
+    int32_t *count;             /* [n] entries of a row, -1: the vertex has no face; then work */
+    char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
 
 /* Vertices held at zero. */
@@ -5747,35 +5736,23 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2])), obtuse = least < 0;
     const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1], size = sum > 1e-100 ? sum : 1;
     if (size != sum && !(least < 0)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
-    /* without branches: which angle is obtuse is anyone's guess */
     return area / 4 * (1 + obtuse * (cot[q] < 0) +
                        (1 - obtuse) * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / size));
 }
 
-/* The mass that corner c of face f, which has an area, has. */
-static HDI_INLINE double hdi_corner_mass(const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t f, int64_t c) {
-    const int64_t begin = hdi_face_begin(mesh, f);
-    if (kind == HD_LAPLACIAN_VORONOI_COT) return hdi_mixed_mass(mesh->cot + begin, c - begin, mesh->area[f]);
-    return mesh->area[f] * (1 / (double)hdi_face_size(mesh, f));
-}
-
-/* Is w seen for the first time? */
-static HDI_INLINE int32_t hdi_ring_first(uint32_t *place, uint32_t base, int32_t w) {
-    const int32_t first = place[w] < base;
-    place[w] = base;
-    return first;
-}
-
 /* How many others there are at vertex v, and itself. */
 static int32_t hdi_ring_count(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
+    const int64_t end = mesh->at[v + 1];
     uint32_t *HDI_RESTRICT place = r->place, base = ++r->base;
     int32_t n = 0;
     int64_t p, k;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
+    for (p = mesh->at[v]; p < end; p++) {
         const int32_t f = hdi_corner_face(mesh, mesh->corner[p]), *w = mesh->tri + hdi_face_begin(mesh, f);
-        for (k = 3; k < hdi_face_size(mesh, f); k++) n += hdi_ring_first(place, base, w[k]);
-        n += hdi_ring_first(place, base, w[0]) + hdi_ring_first(place, base, w[1]) +
-             hdi_ring_first(place, base, w[2]);
+        const int64_t size = hdi_face_size(mesh, f);
+        for (k = 0; k < size; k++) {
+            n += place[w[k]] < base;
+            place[w[k]] = base;
+        }
     }
     return n;
 }
@@ -5786,18 +5763,15 @@ static HDI_INLINE void hdi_ring_add(hdi_ring *r, const hdi_mesh *mesh, int32_t f
                                     int64_t third, int after, int beside) {
     const int32_t w = mesh->tri[d], copies = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0;
     const double area = mesh->area[f], *cot = mesh->cot;
-    const uint32_t last = (uint32_t)r->n;
-    uint32_t at;
-    hdi_entry *e;
-    if (w < r->at->to && !(r->row && r->row[w] < 0)) return;
-    at = r->place[w] - r->base;
-    at = at < last ? at : last;
+    const uint32_t last = (uint32_t)r->n, place = r->place[w] - r->base, at = place < last ? place : last;
+    hdi_entry *e = r->at + at;
     r->n += at == last;
     r->place[w] = r->base + at;
     e = r->at + at;
     e->to = w;
     if (!(area > 0)) return;
-    e->cot += hdi_is_poly(mesh) ? -2 * hdi_poly_entry(mesh, c, d, hdi_face_size(mesh, f), beside) : cot[third];
+    if (hdi_is_poly(mesh)) e->cot -= 2 * hdi_poly_entry(mesh, c, d, hdi_face_size(mesh, f), beside);
+    else e->cot += cot[third];
     if (mesh->len) e->size = mesh->len[after ? c : d];
     else if (!mesh->xyz) e->size += fabs(cot[c]) + fabs(cot[d]) + fabs(cot[third]);
     e->B += area;
@@ -5806,10 +5780,11 @@ static HDI_INLINE void hdi_ring_add(hdi_ring *r, const hdi_mesh *mesh, int32_t f
     e->sides[after] += odd;
 }
 
-/* What vertex v shares with itself, and then with others: sums over the faces, in their order. plain:
+/* What vertex v shares with itself, and then with each other one: sums over the faces, in their order. plain:
  * triangles in space, without copies. Without coordinates, weights above zero, which are there by rounding
  * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
-static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v, int plain) {
+static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, hd_laplacian_kind kind, int32_t v,
+                                     int plain) {
     hdi_mesh mesh = *m;                          /* local, as what is written below is not part of it */
     hdi_ring r = *to;
     int64_t p, q;
@@ -5831,31 +5806,35 @@ static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v,
         const int32_t f = hdi_corner_face(&mesh, c);
         const int64_t begin = hdi_face_begin(&mesh, f), end = begin + hdi_face_size(&mesh, f);
         const int64_t next = c + 1 < end ? c + 1 : begin, before = c > begin ? c - 1 : end - 1;
-        if (mesh.area[f] > 0) r.mass += hdi_corner_mass(&mesh, r.kind, f, c);
+        const double area = mesh.area[f];
+        if (area > 0)
+            r.mass += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_mixed_mass(mesh.cot + begin, c - begin, area)
+                                                       : area * (1 / (double)(end - begin));
         if (plain) {
             hdi_ring_add(&r, &mesh, f, c, next, before, 1, 1);
             hdi_ring_add(&r, &mesh, f, c, before, next, 0, 1);
             continue;
         }
         for (q = begin; q < end; q++)
-            if (q != c) hdi_ring_add(&r, &mesh, f, c, q, next + before - q, q == next, q == next || q == before);
+            if (q != c)
+                hdi_ring_add(&r, &mesh, f, c, q, next + before - q, q == next, q == next || q == before);
     }
     *to = r;
     for (k = 0; k < r.n && !mesh.xyz && !mesh.len; k++)
         if (r.at[k].cot < 0 && r.at[k].cot >= -2e-13 * r.at[k].size) r.at[k].cot = 0;
 }
 
-static void hdi_ring_of(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
-    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(r, mesh, v, 1);
-    else hdi_ring_make(r, mesh, v, 0);
+static void hdi_ring_of(hdi_ring *r, const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t v) {
+    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(r, mesh, kind, v, 1);
+    else hdi_ring_make(r, mesh, kind, v, 0);
 }
 
 /* Counts an edge of vertex v, if it is one to a later vertex. */
 static HDI_INLINE void hdi_rows_edge(const hdi_rows *x, int32_t v, const hdi_entry *e, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     const int32_t faces = e->sides[0] + e->sides[1];
-    if (e->to < v) return;
     if (faces == 1) x->border[v] = 1;
+    if (e->to <= v) return;
     t->n[HDI_NEGATIVE] += e->cot < 0;
     if (faces == 0 || (!mesh->xyz && !mesh->len)) return;
     t->n[HDI_EDGES]++;
@@ -5865,74 +5844,48 @@ static HDI_INLINE void hdi_rows_edge(const hdi_rows *x, int32_t v, const hdi_ent
     t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
 }
 
-/* Counts the edges of vertex v. Fills its row in L and B, if it has one, from the diagonal on, which stands
- * beside what fills the row's end. A column without a row adds to the diagonal and is not written. An edge from
- * the vertex to itself has no weight, and is twice in its B. */
+/* Counts the edges of vertex v, and fills its row in L and B, if it has one. A column without a row adds to
+ * the diagonal and is not written; its room, which updates do not have any more, is marked. An edge from the
+ * vertex to itself has no weight, and is twice in its B. */
 static void hdi_rows_fill(const hdi_rows *x, const hdi_ring *r, int32_t v, hdi_tally *t) {
     hd_laplacian *lap = x->lap;
-    const int32_t i = lap ? lap->row[v] : -1;
-    double sum = 0;
-    int leaks = 0;
-    int32_t k, n = 0;
-    int64_t at;
-    for (k = 1; k < r->n; k++) {
-        const hdi_entry *e = r->at + k;
+    const int32_t i = lap ? lap->row[v] : -1, n = r->n;
+    const hdi_entry *entry = r->at;
+    uint64_t *key = (uint64_t *)(void *)r->list;
+    double *B = lap ? lap->B : NULL, sum = 0, b_sum = 0, b_own = 0;
+    int64_t at = i < 0 ? 0 : lap->L.row_ptr[i], diagonal = 0;
+    int held = 0, leaks = 0;
+    int32_t k;
+    for (k = 0; k < n; k++) key[k] = (uint64_t)entry[k].to << 32 | (uint64_t)k;
+    hdi_sort_keys(key, n);
+    for (k = 0; k < n; k++) {
+        const hdi_entry *e = entry + (uint32_t)key[k];
         const int32_t j = i < 0 ? -1 : lap->row[e->to];
         hdi_rows_edge(x, v, e, t);
-        if (j < 0) {
-            sum += e->cot / 2;
-            leaks |= e->cot != 0;
+        if (i < 0) continue;
+        if (j == i) {
+            diagonal = at++;
+            b_own = e->B / 12;
             continue;
         }
-        r->list[n].key = (uint64_t)j;
-        r->list[n++].id = k;
+        sum += e->cot / 2;
+        held |= j < 0;
+        leaks |= j < 0 && e->cot != 0;
+        if (j < 0) continue;
+        lap->L.col[at] = j;
+        lap->L.val[at] = -e->cot / 2;
+        if (B) b_sum += B[at] = e->B / 12;
+        at++;
     }
     if (i < 0) return;
-    hdi_sort_pairs(r->list, n);
-    x->count[v] = n;
-    at = lap->L.row_ptr[i + 1] - n - 1;
-    lap->L.col[at] = i;
-    lap->L.val[at] = sum;
+    for (; at < lap->L.row_ptr[i + 1]; at++) lap->L.col[at] = -1;
+    lap->L.col[diagonal] = i;
+    lap->L.val[diagonal] = sum;
     lap->mass[i] = hdi_is_plain(lap->kind) ? 1 : r->mass;
     /* a sixth of the areas that the mass has thirds of */
-    if (lap->B) lap->B[at] = lap->b_diag[i] = lap->mass[i] / 2 + r->at->B / 12;
+    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + b_own;
+    if (B && held) lap->mass[i] = b_sum + B[diagonal];
     if (lap->holding) lap->holding->leak[v] = (char)leaks;
-    for (k = 0; k < n; k++) {
-        const hdi_entry *e = r->at + r->list[k].id;
-        lap->L.col[++at] = (int32_t)r->list[k].key;
-        lap->L.val[at] = -e->cot / 2;
-        if (lap->B) lap->B[at] = e->B / 12;
-    }
-}
-
-/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. Room of
- * columns without a row, which updates do not have any more, is marked. */
-static void hdi_rows_mirror(hdi_rows *x, hd_laplacian *lap) {
-    const int64_t *ptr = lap->L.row_ptr;
-    double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B;
-    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT n_before = x->work, i;
-    int64_t p, q;
-    hdi_fill_i32(n_before, lap->n_active, 0);
-    for (i = 0; i < lap->n_active; i++) {
-        const int64_t end = ptr[i + 1], diagonal = end - 1 - x->count[lap->vertex[i]];
-        double sum = L[diagonal], b_sum = B ? B[diagonal] : 0;
-        for (p = ptr[i]; p < ptr[i] + n_before[i]; p++) {
-            sum -= L[p];
-            b_sum += B ? B[p] : 0;
-        }
-        for (; p < diagonal; p++) col[p] = -1;
-        for (p = diagonal + 1; p < end; p++) {
-            q = ptr[col[p]] + n_before[col[p]]++;
-            col[q] = i;
-            L[q] = L[p];
-            sum -= L[p];
-            if (!B) continue;
-            B[q] = B[p];
-            b_sum += B[p];
-        }
-        L[diagonal] = sum;
-        if (B && lap->n_held > 0) lap->mass[i] = b_sum;
-    }
 }
 
 /* Vertex v: counts others, or fills its row. In covers faces repeat others by right. */
@@ -5945,7 +5898,7 @@ static void hdi_rows_vertex(hdi_rows *x, hdi_ring *r, int32_t v, hdi_tally *t) {
         x->count[v] = hdi_ring_count(r, mesh, v);
         if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, r->list);
     } else {
-        hdi_ring_of(r, mesh, v);
+        hdi_ring_of(r, mesh, x->lap ? x->lap->kind : HD_LAPLACIAN_FEM, v);
         hdi_rows_fill(x, r, v, t);
     }
 }
@@ -5963,39 +5916,11 @@ static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
     }
 }
 
-/* Unites the vertices of the border, of which those are marked that have an edge of it to a later one, and marks
- * the others. Returns the number of loops. */
-static int32_t hdi_rows_loops(hdi_rows *x) {
-    int32_t v, k, n = 0;
-    hdi_fill_own(x->work, x->mesh.n);
-    for (v = 0; v < x->mesh.n; v++) {
-        n += x->border[v] != 0;                  /* a set, until it is united with another one */
-        if (!(x->border[v] & 1)) continue;
-        hdi_ring_of(x->ring, &x->mesh, v);
-        for (k = 1; k < x->ring->n; k++) {
-            const hdi_entry *e = x->ring->at + k;
-            if (e->to < v || e->sides[0] + e->sides[1] != 1) continue;
-            n -= hdi_unite(x->work, v, e->to);
-            x->border[e->to] |= 2;
-        }
-    }
-    return n;
-}
-
 /* All rows of lap; NULL: of none. Returns what was counted. */
 static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
-    hdi_tally all;
-    int32_t k;
     x->lap = lap;
-    for (k = 0; k < x->strands; k++) {
-        x->ring[k].row = lap && lap->n_held > 0 ? lap->row : NULL;
-        x->ring[k].kind = lap ? lap->kind : HD_LAPLACIAN_FEM;
-    }
     hdi_parallel(ctx, x->strands, hdi_rows_task, x);
-    if (lap) hdi_rows_mirror(x, lap);
-    all = hdi_tally_all(&x->mesh, x->mesh.n);
-    if (!x->counting && (x->mesh.xyz || x->mesh.len)) all.n[HDI_LOOPS] = hdi_rows_loops(x);
-    return all;
+    return hdi_tally_all(&x->mesh, x->mesh.n);
 }
 
 /* Finds faces that repeat others and counts the entries of rows, in s. The corners of the mesh are listed. */
@@ -6009,13 +5934,12 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     x->mesh = *mesh;
     x->strands = hdi_is_serial(s->ctx) ? 1 : hdi_low32(HDI_STRANDS, n / (int32_t)hdi_block_size(n) + 1);
     for (v = 0; v < n; v++) {
-        int64_t here = 8 + 2 * (mesh->at[v + 1] - mesh->at[v]);          /* itself, and no line of a cache is shared */
+        int64_t here = 8 + 2 * (mesh->at[v + 1] - mesh->at[v]);    /* no line of a cache is shared */
         for (p = mesh->at[v]; hdi_is_poly(mesh) && p < mesh->at[v + 1]; p++)
             here += hdi_face_size(mesh, mesh->of[mesh->corner[p]]) - 3;
         most = hdi_most(most, here);
     }
     x->count = HDI_TAKE(s, int32_t, n);
-    x->work = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
     all.at = HDI_TAKE_ZERO(s, hdi_entry, x->strands * most);
     all.list = HDI_TAKE(s, hdi_pair, x->strands * most);
@@ -6037,8 +5961,17 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
 }
 
 /* What is known of the edges of a mesh in space, and their mean length. */
-static void hdi_rows_report(hdi_tally all, hd_mesh_report *rep, double *h) {
-    rep->n_boundary_loops = (int32_t)all.n[HDI_LOOPS];
+static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, double *h) {
+    int32_t v, k;
+    hdi_fill_own(x->count, x->mesh.n);
+    for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
+        if (!x->border[v]) continue;
+        rep->n_boundary_loops++;                 /* a set, until it is united with another one */
+        hdi_ring_of(x->ring, &x->mesh, HD_LAPLACIAN_FEM, v);
+        for (k = 1; k < x->ring->n; k++)
+            if (x->ring->at[k].sides[0] + x->ring->at[k].sides[1] == 1)
+                rep->n_boundary_loops -= hdi_unite(x->count, v, x->ring->at[k].to);
+    }
     rep->n_edges = all.n[HDI_EDGES];
     rep->n_boundary_edges = all.n[HDI_BOUNDARY];
     rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
@@ -6052,7 +5985,7 @@ static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
     int32_t v;
     if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
     (void)hdi_rows_run(x, NULL, lap->context);
-    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v] != 0;
+    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
 }
 
 /* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
@@ -6062,7 +5995,7 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     lap->conserves = 1;
     lap->mesh.n_negative_weights = all.n[HDI_NEGATIVE];
     if (!x->mesh.xyz && !x->mesh.len) return;
-    hdi_rows_report(all, &lap->mesh, &lap->h);
+    hdi_rows_report(x, all, &lap->mesh, &lap->h);
     for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += hdi_max(x->mesh.area[f], 0);
 }
 
@@ -6157,7 +6090,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hdi_scope *s) {
     hdi_rows x;
     if (hdi_rows_begin(&x, mesh, &lap->mesh, s) < 0) return s->e->status;
-    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
+    hdi_rows_report(&x, hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
     hdi_rows_border(&x, lap);
     return HD_OK;
 }
@@ -12989,10 +12922,11 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
 
 /* sum_j (l |L_ij| + b |B_ij|) |x_j| of row i, with factors of |x_j| up to 1e140. x NULL: ones. */
 static double hdi_row_size(const hd_laplacian *lap, int32_t i, double l, double b, const double *x) {
-    double sum = lap->B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
+    const double *B = b != 0 ? lap->B : NULL;
+    double sum = B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
     int64_t p;
     for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-        const double m = l * fabs(lap->L.val[p]) + (lap->B ? b * fabs(lap->B[p]) : 0);
+        const double m = l * fabs(lap->L.val[p]) + (B ? b * fabs(B[p]) : 0);
         sum += x ? hdi_min(m, 1e140) * fabs(x[lap->L.col[p]]) : m;
     }
     return sum;
@@ -16911,13 +16845,10 @@ static const double *hdi_lane_answer(const hdi_lane *lane) { return lane->dual ?
 /* By Gershgorin's theorem every eigenvalue of B^-1 L is below this. Where b_ratio is not known it is a guess,
  * which serves for choices only. */
 static double hdi_lambda_bound(const hd_laplacian *lap) {
-    double most = 0, size;
+    double most = 0;
     int32_t i;
-    int64_t p;
-    for (i = 0, p = 0; i < lap->n_active; i++) {
-        for (size = 0; p < lap->L.row_ptr[i + 1]; p++) size += fabs(lap->L.val[p]);
-        most = hdi_max(most, size / lap->b_diag[i]);
-    }
+    for (i = 0; i < lap->n_active; i++)
+        most = hdi_max(most, hdi_row_size(lap, i, 1, 0, NULL) / lap->b_diag[i]);
     return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
