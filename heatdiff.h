@@ -4267,11 +4267,11 @@ static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
             return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
     if (end > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (end > 0 && !tri) return hdi_missing(e);
-    for (f = 0, c = 0; f < m; f++)
-        for (end = ptr ? ptr[f + 1] : c + 3; c < end; c++)
-            if ((uint32_t)tri[c] >= (uint32_t)mesh->n)
-                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
-                                     tri[c]);
+    for (c = 0; c < end; c++) {
+        if ((uint32_t)tri[c] < (uint32_t)mesh->n) continue;
+        for (f = ptr ? 0 : (int32_t)(c / 3); ptr && ptr[f + 1] <= c;) f++;
+        return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1, tri[c]);
+    }
     return HD_OK;
 }
 
@@ -4788,9 +4788,10 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, (int64_t)m + 1) : NULL, n, k, q;
     if (s->e->status < 0) return hdi_scope_end(&own);
     for (f = 0; f < m; f++) {
-        low[f] = mesh->n;                        /* of a face without corners */
+        int32_t least = mesh->n;                 /* of a face without corners */
         for (k = 0, n = hdi_face_begin(mesh, f); k < hdi_face_size(mesh, f); k++)
-            low[f] = hdi_low32(low[f], v[n + k]);
+            least = hdi_low32(least, v[n + k]);
+        low[f] = least;
     }
     hdi_group(low, m, mesh->n + 1, at, face);
     for (f = 0, n = 0; f < m; f++, n += k) {
