@@ -4567,7 +4567,7 @@ static int64_t hdi_block_size(int64_t n) {
 /* What is counted of faces and edges. */
 enum hdi_counted {
     HDI_USED, HDI_REPEATED_CORNER, HDI_ZERO_AREA, HDI_REPEATED_FACE,
-    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_COUNTED
+    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_LOOPS, HDI_COUNTED
 };
 
 /* What a block of faces or of vertices adds to the report. */
@@ -4700,12 +4700,6 @@ static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f) {
     return least;
 }
 
-/* Of a face with smallest corner c the two corners beside that, which tell triangles apart. */
-static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
-    const int32_t a = mesh->tri[hdi_corner_before(mesh, c)], b = mesh->tri[hdi_corner_after(mesh, c)];
-    return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
-}
-
 /* Have the faces of c and d, whose keys are the same, their corners in the same cyclic order? */
 static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     const int forward = mesh->tri[hdi_corner_after(mesh, c)] == mesh->tri[hdi_corner_after(mesh, d)];
@@ -4723,12 +4717,14 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
  * them. list: room for them. */
 static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t f, hdi_pair *list, int64_t *count) {
     const int32_t v = hdi_face_least(mesh, f);
-    int32_t p, q, n = 0;
+    int32_t p, q, a, b, n = 0;
     int64_t c;
     for (; f < mesh->m && hdi_face_least(mesh, f) == v; f++) {
         if (!(mesh->area[f] > 0)) continue;
         for (c = hdi_face_begin(mesh, f); mesh->tri[c] != v;) c++;
-        list[n].key = hdi_corner_key(mesh, c);
+        a = mesh->tri[hdi_corner_before(mesh, c)];         /* which tell triangles apart */
+        b = mesh->tri[hdi_corner_after(mesh, c)];
+        list[n].key = (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
         list[n++].id = c;
     }
     if (n > 1) hdi_sort_pairs(list, n);
@@ -5756,15 +5752,17 @@ static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t li
     const int32_t q = (int32_t)(uint32_t)link, c = hdi_is_poly(mesh) ? hdi_corner_beside(mesh, v, q) : q;
     const int32_t f = hdi_corner_face(mesh, q), faces = hdi_link_faces(mesh, v, link);
     const int32_t odd = mesh->odd ? mesh->odd[f] : 0;
-    const double area = mesh->area[f], *cot = mesh->cot + hdi_triple(f);
-    if (!(area > 0)) return;
+    const double *cot = mesh->cot;
+    const int64_t begin = hdi_face_begin(mesh, f);
+    if (!(mesh->area[f] > 0)) return;
     if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, q, hdi_face_size(mesh, f), faces);
-    else e->L -= cot[hdi_prev3[q - hdi_triple(f)]] / 2;
+    else e->L -= cot[begin + hdi_prev3[q - begin]] / 2;
     if (mesh->len) e->size = mesh->len[q];
-    else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-    e->B += area;
+    else if (!mesh->xyz) e->size += fabs(cot[begin]) + fabs(cot[begin + 1]) + fabs(cot[begin + 2]);
+    e->B += mesh->area[f];
     e->faces += faces;
-    e->forward += (hdi_is_poly(mesh) ? hdi_corner_after(mesh, c) == q : mesh->tri[q] == v) ? faces - odd : odd;
+    e->forward += (hdi_is_poly(mesh) ? hdi_corner_after(mesh, c) == q : mesh->tri[q] == v) ? faces - odd
+                                                                                           : odd;
 }
 
 /* The edge of vertex v whose links begin at p, which moves on. Without coordinates, weights above zero, which
@@ -5799,6 +5797,7 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
     int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
     double sum = 0, own = 0;
     int leaks = 0;
+    x->border[v] = 0;
     for (p = x->first[v]; p < x->first[v + 1];) {
         const hdi_edge e = hdi_rows_edge(x, v, &p);
         const int32_t j = i < 0 ? -1 : lap->row[e.to];
@@ -5806,6 +5805,7 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
             own = e.B / 6;
             continue;
         }
+        if (e.faces == 1) x->border[v] = 1;
         hdi_edge_count(&x->mesh, v, &e, t);
         if (i < 0) continue;
         if (j < 0) {
@@ -5889,13 +5889,34 @@ static void hdi_rows_masses(const hdi_mesh *mesh, hd_laplacian *lap) {
     }
 }
 
+/* Unites the vertices of the border, of which those are marked that have an edge of it to a later one, and
+ * marks the others. Returns the number of loops. */
+static int32_t hdi_rows_loops(const hdi_rows *x) {
+    int32_t v, n = 0;
+    int64_t p;
+    hdi_fill_own(x->work, x->mesh.n);
+    for (v = 0; v < x->mesh.n; v++) {
+        n += x->border[v] > 0;                   /* a set, until it is united with another one */
+        for (p = x->first[v]; (x->border[v] & 1) && p < x->first[v + 1];) {
+            const hdi_edge e = hdi_rows_edge(x, v, &p);
+            if (e.faces != 1) continue;
+            n -= hdi_unite(x->work, v, e.to);
+            x->border[e.to] |= 2;
+        }
+    }
+    return n;
+}
+
 /* All rows of lap; NULL: of none. Returns what was counted. */
 static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
+    hdi_tally all;
     x->lap = lap;
     if (lap) hdi_rows_masses(&x->mesh, lap);
     hdi_parallel_ranges(ctx, x->mesh.n, hdi_block_size(x->mesh.n), hdi_rows_task, x);
     if (lap) hdi_rows_mirror(x, lap);
-    return hdi_tally_all(&x->mesh, x->mesh.n);
+    all = hdi_tally_all(&x->mesh, x->mesh.n);
+    all.n[HDI_LOOPS] = hdi_rows_loops(x);
+    return all;
 }
 
 static HDI_INLINE void hdi_rows_link(int64_t *HDI_RESTRICT first, uint64_t *HDI_RESTRICT link, int32_t v,
@@ -5972,49 +5993,37 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     return HD_OK;
 }
 
-/* Counts the entries of rows without the vertices held, marks the vertices of the border and unites them along
- * it. Returns the number of its loops. */
-static int32_t hdi_rows_join(const hdi_rows *x, const char *held) {
-    const int32_t n = x->mesh.n;
-    int32_t v, n_loops = 0;
-    int64_t p;
-    hdi_fill_own(x->work, n);
-    hdi_fill_i32(x->count, n, -1);
-    memset(x->border, 0, (size_t)n);
-    for (v = 0, p = 0; v < n; v++) {
-        const int64_t end = x->first[v + 1];
+/* Counts the entries of rows, without the vertices held. */
+static void hdi_rows_count(const hdi_rows *x, const char *held) {
+    int64_t p = 0;
+    int32_t v;
+    hdi_fill_i32(x->count, x->mesh.n, -1);
+    for (v = 0; v < x->mesh.n; v++) {
+        const int64_t begin = p, end = x->first[v + 1];
         int32_t later = 0;
-        if (p < end) x->count[v] = hdi_high32(x->count[v], 1);
         while (p < end) {
             const int32_t w = (int32_t)(x->link[p] >> 32), counts = w != v && !(held && (held[v] || held[w]));
-            int32_t faces = 0;
-            for (; p < end && (int32_t)(x->link[p] >> 32) == w; p++) faces += hdi_link_faces(&x->mesh, v, x->link[p]);
+            while (++p < end && (int32_t)(x->link[p] >> 32) == w) {}
             later += counts;
             x->count[w] = hdi_high32(x->count[w], 1) + counts;
-            if (faces != 1) continue;
-            x->border[v] = x->border[w] = 1;
-            n_loops -= hdi_unite(x->work, v, w);
         }
-        n_loops += x->border[v];                 /* a set, until it is united with another one */
         x->later[v] = later;
-        x->count[v] += later;
+        if (begin < end) x->count[v] = hdi_high32(x->count[v], 1) + later;
     }
-    return n_loops;
 }
 
-/* Joins edges; with the vertices of the border held, where that is asked for. */
-static int32_t hdi_rows_border(const hdi_rows *x, const hd_laplacian *lap) {
+/* Marks the vertices of the border where that is asked for. */
+static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
     char *mark = lap->holding && lap->holding->border ? lap->holding->mark : NULL;
-    const int32_t n_loops = hdi_rows_join(x, hdi_lap_marks(lap));
     int32_t v;
-    if (!mark || (!x->mesh.xyz && !x->mesh.len)) return n_loops;
-    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
-    return hdi_rows_join(x, hdi_lap_marks(lap));
+    if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
+    (void)hdi_rows_run(x, NULL, lap->context);
+    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v] > 0;
 }
 
 /* What is known of the edges of a mesh in space, and their mean length. */
-static void hdi_rows_report(hdi_tally all, int32_t n_loops, hd_mesh_report *rep, double *h) {
-    rep->n_boundary_loops = n_loops;
+static void hdi_rows_report(hdi_tally all, hd_mesh_report *rep, double *h) {
+    rep->n_boundary_loops = (int32_t)all.n[HDI_LOOPS];
     rep->n_edges = all.n[HDI_EDGES];
     rep->n_boundary_edges = all.n[HDI_BOUNDARY];
     rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
@@ -6023,13 +6032,13 @@ static void hdi_rows_report(hdi_tally all, int32_t n_loops, hd_mesh_report *rep,
 }
 
 /* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
-static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x, int32_t n_loops) {
+static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     const hdi_tally all = hdi_rows_run(x, lap, lap->context);
     int32_t f;
     lap->conserves = 1;
     lap->mesh.n_negative_weights = all.n[HDI_NEGATIVE];
     if (!x->mesh.xyz && !x->mesh.len) return;
-    hdi_rows_report(all, n_loops, &lap->mesh, &lap->h);
+    hdi_rows_report(all, &lap->mesh, &lap->h);
     for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += hdi_max(x->mesh.area[f], 0);
 }
 
@@ -6060,7 +6069,7 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     memset(&rep, 0, sizeof rep);
     if (hdi_faces_measure(&x->mesh, &rep, lap->context, e) < 0 || hdi_moving_masses(x, e) < 0)
         return e->status;
-    hdi_lap_values(lap, x, hdi_rows_join(x, hdi_lap_marks(lap)));
+    hdi_lap_values(lap, x);
     to->n_faces_used = rep.n_faces_used;
     to->n_zero_area = to->n_faces - rep.n_faces_used - to->n_repeated_corner - to->n_repeated_face;
     to->smallest_angle = rep.smallest_angle;
@@ -6105,14 +6114,15 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 /* (L, B) and places of faces that are measured and live in s. */
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
     hdi_rows *x = HDI_TAKE(s, hdi_rows, 1);
-    int32_t f, n_loops;
+    int32_t f;
     if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
     if (in->updatable) lap->moving = x;
-    n_loops = hdi_rows_border(x, lap);
+    hdi_rows_border(x, lap);
+    hdi_rows_count(x, hdi_lap_marks(lap));
     if (hdi_lap_rows(lap, x->count, in->full && lap->kind == HD_LAPLACIAN_FEM, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
         return s->e->status;
-    hdi_lap_values(lap, x, n_loops);
+    hdi_lap_values(lap, x);
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
@@ -6125,7 +6135,8 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
 static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hdi_scope *s) {
     hdi_rows x;
     if (hdi_rows_begin(&x, mesh, &lap->mesh, s) < 0) return s->e->status;
-    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), hdi_rows_border(&x, lap), &lap->mesh, h);
+    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
+    hdi_rows_border(&x, lap);
     return HD_OK;
 }
 
