@@ -4202,8 +4202,8 @@ typedef struct hdi_mesh {
     double *g;          /* [3 corners] of polygons: (corner before - corner after) / (2 sqrt(area)) */
     double *w;          /* [2 corners] of polygons: see hdi_poly_frame; of those with three corners not set */
     int32_t *of;        /* [corners] of polygons: the face of a corner */
-    int64_t *at;        /* [n + 1] once they are listed: corners at each vertex, faces ascending, where there */
-    int32_t *corner;    /* [corners]                                                            was an area */
+    int64_t *at;        /* [n + 1] if listed: corners at each vertex, of faces that had an area, ascending */
+    int32_t *corner;    /* [corners] */
     struct hdi_tally *tally;    /* [HDI_BLOCKS_MOST] work */
 } hdi_mesh;
 
@@ -4227,7 +4227,6 @@ static HDI_INLINE int64_t hdi_face_begin(const hdi_mesh *mesh, int32_t f) {
     return hdi_is_poly(mesh) ? mesh->ptr[f] : hdi_triple(f);
 }
 
-/* Corners of face f. */
 static HDI_INLINE int64_t hdi_face_size(const hdi_mesh *mesh, int32_t f) {
     return hdi_is_poly(mesh) ? mesh->ptr[f + 1] - mesh->ptr[f] : 3;
 }
@@ -4712,9 +4711,8 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     return 0;
 }
 
-/* Of the faces from f on with its smallest vertex, which stand together, those get area 0 that have the corners
- * of an earlier one in the same cyclic order, in either direction. Counts them, and returns the face behind
- * them. list: room for them. */
+/* Of the faces from f on with its smallest vertex those get area 0 that have the corners of an earlier one in
+ * the same cyclic order, in either direction. Counts them. Returns the face behind. list: room for all. */
 static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t f, hdi_pair *list, int64_t *count) {
     const int32_t v = hdi_face_least(mesh, f);
     int32_t p, q, a, b, n = 0;
@@ -4761,12 +4759,6 @@ static int32_t hdi_side_edge(const hdi_mesh *mesh, int32_t s, int32_t *v, hdi_pa
     const int32_t i = mesh->tri[s], j = mesh->tri[hdi_side_next(s)];
     *v = hdi_low32(i, j);
     return mesh->area[s / 3] > 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
-}
-
-/* The length of the side of a triangle that begins at corner c. */
-static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, int64_t c) {
-    return mesh->len ? mesh->len[c]
-                     : hdi_edge_length(mesh->xyz, mesh->tri[c], mesh->tri[hdi_corner_after(mesh, c)]);
 }
 
 /* Do the faces at each edge agree on its length? */
@@ -5062,10 +5054,13 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
     z->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     for (f = 0; f < mesh->m; f++) {
+        const int32_t *v = mesh->tri + hdi_triple(f);
         double *len = z->len + hdi_triple(f), spare;
         if (!(mesh->area[f] > 0)) continue;
         z->total += mesh->area[f] * hdi_copies(mesh, f);
-        for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / z->unit;
+        for (q = 0; q < 3; q++)
+            len[q] = (mesh->len ? mesh->len[hdi_triple(f) + q]
+                                : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / z->unit;
         spare = hdi_min(hdi_min(len[0] + len[1] - len[2], len[2] + len[0] - len[1]),
                         len[2] + len[1] - len[0]);
         if (delta >= 0 && spare < delta) rep->n_mollified += hdi_copies(mesh, f);
@@ -5480,9 +5475,9 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
  * listed there. */
 
 /* ---- rows from corners ----
- * Every mesh is faces with k corners and an element matrix each. An entry behind the diagonal of a row is a sum
- * over links, the pairs of corners of a face, in the order of the faces: any thread can fill what any row has
- * there. One thread copies it into the later rows, so that L is symmetric to the last bit. */
+ * Every mesh is faces with k corners and an element matrix each. What a row has behind its diagonal are sums
+ * over links, the pairs of corners of a face, in the order of the faces: any thread can fill that of any row.
+ * One thread copies it into the later rows: L is symmetric to the last bit. */
 
 /* Is B the identity? */
 static int hdi_is_plain(hd_laplacian_kind kind) {
@@ -5503,10 +5498,9 @@ typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
     int64_t *first;             /* [n + 1] the links of each vertex to later ones, or to itself */
-    /* the later vertex << 32 | its corner; of triangles that where the side begins; ascending for each vertex */
-    uint64_t *link;
+    uint64_t *link;             /* that << 32 | its corner, of triangles where the side begins; ascending */
     hdi_pair *list;             /* [m] work */
-    int32_t *count, *later;     /* [n] entries of a row, -1: the vertex has no face; those behind its diagonal */
+    int32_t *count, *later;     /* [n] entries of a row, -1: it has no face; those behind the diagonal */
     int32_t *work;              /* [n] */
     char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
@@ -5709,14 +5703,6 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
  * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
  * number for all faces. On triangles the second part is zero, and is not computed. */
 
-/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
- * same to the last bit for (d, c). */
-static HDI_INLINE double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t k, int beside) {
-    const double *u = mesh->w + 2 * c, *v = mesh->w + 2 * d,
-                 first = hdi_dot3(mesh->g + 3 * c, mesh->g + 3 * d);
-    return k == 3 ? first : first - mesh->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
-}
-
 /* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
  * + |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three
  * products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
@@ -5731,42 +5717,33 @@ static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
                        (1 - obtuse) * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / size));
 }
 
-/* The corner of vertex v in the face of corner d of a polygon. */
-static int32_t hdi_corner_beside(const hdi_mesh *mesh, int32_t v, int64_t d) {
-    int64_t p = mesh->at[v];
-    while (mesh->of[mesh->corner[p]] != mesh->of[d]) p++;
-    return mesh->corner[p];
-}
-
-/* How often a link of vertex v is a side of a face that has an area. */
-static HDI_INLINE int32_t hdi_link_faces(const hdi_mesh *mesh, int32_t v, uint64_t link) {
-    const int32_t q = (int32_t)(uint32_t)link;
-    int64_t c;
-    if (!hdi_is_poly(mesh)) return mesh->area[q / 3] > 0 ? hdi_copies(mesh, q / 3) : 0;
-    c = hdi_corner_beside(mesh, v, q);
-    return mesh->area[mesh->of[q]] > 0 && (hdi_corner_after(mesh, c) == q || hdi_corner_after(mesh, q) == c);
-}
-
-/* Adds a link of vertex v. */
+/* Adds a link of vertex v: an entry of L_f. */
 static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t link, hdi_edge *e) {
-    const int32_t q = (int32_t)(uint32_t)link, c = hdi_is_poly(mesh) ? hdi_corner_beside(mesh, v, q) : q;
-    const int32_t f = hdi_corner_face(mesh, q), faces = hdi_link_faces(mesh, v, link);
-    const int32_t odd = mesh->odd ? mesh->odd[f] : 0;
-    const double *cot = mesh->cot;
+    const int32_t q = (int32_t)(uint32_t)link, f = hdi_corner_face(mesh, q), *c;
     const int64_t begin = hdi_face_begin(mesh, f);
+    const double *cot = mesh->cot, *w, *own;
+    int32_t faces = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, forward = mesh->tri[q] == v;
     if (!(mesh->area[f] > 0)) return;
-    if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, q, hdi_face_size(mesh, f), faces);
-    else e->L -= cot[begin + hdi_prev3[q - begin]] / 2;
+    if (hdi_is_poly(mesh)) {
+        for (c = mesh->corner + mesh->at[v]; mesh->of[*c] != f;) c++;
+        forward = hdi_corner_after(mesh, *c) == q;
+        faces = forward || hdi_corner_after(mesh, q) == *c;
+        e->L += hdi_dot3(mesh->g + hdi_triple(*c), mesh->g + hdi_triple(q));
+        w = mesh->w + 2 * (int64_t)*c;
+        own = mesh->w + 2 * (int64_t)q;
+        if (hdi_face_size(mesh, f) > 3) e->L -= mesh->lambda * (faces + (w[0] * own[0] + w[1] * own[1]));
+    } else {
+        e->L -= cot[begin + hdi_prev3[q - begin]] / 2;
+    }
     if (mesh->len) e->size = mesh->len[q];
     else if (!mesh->xyz) e->size += fabs(cot[begin]) + fabs(cot[begin + 1]) + fabs(cot[begin + 2]);
     e->B += mesh->area[f];
     e->faces += faces;
-    e->forward += (hdi_is_poly(mesh) ? hdi_corner_after(mesh, c) == q : mesh->tri[q] == v) ? faces - odd
-                                                                                           : odd;
+    e->forward += forward ? faces - odd : odd;
 }
 
-/* The edge of vertex v whose links begin at p, which moves on. Without coordinates, weights above zero, which
- * are there by rounding only, become zero when they are below 1e-13 of the cotangents that they are made of. */
+/* The edge of vertex v whose links begin at p, which moves on. Without coordinates, weights above zero are
+ * there by rounding only: they become zero when they are below 1e-13 of the cotangents that they sum up. */
 static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *p) {
     const uint64_t *link = x->link + *p, *end = x->link + x->first[v + 1];
     hdi_edge e = {0, 0, 0, 0, 0, 0};
@@ -5777,21 +5754,10 @@ static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *
     return e;
 }
 
-/* Counts an edge of vertex v. */
-static HDI_INLINE void hdi_edge_count(const hdi_mesh *mesh, int32_t v, const hdi_edge *e, hdi_tally *t) {
-    t->n[HDI_NEGATIVE] += e->L > 0;
-    if (e->faces == 0 || (!mesh->xyz && !mesh->len)) return;
-    t->n[HDI_EDGES]++;
-    if (e->faces == 1) t->n[HDI_BOUNDARY]++;
-    else if (e->faces > 2) t->n[HDI_NONMANIFOLD]++;
-    else if (e->forward != 1) t->n[HDI_MISORIENTED]++;
-    t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
-}
-
-/* Counts the edges of vertex v, and fills its row in L and B, if it has one, from the diagonal on. A column
- * without a row adds to the diagonal and is not written. An edge from the vertex to itself has no weight, and is
- * twice in its B. */
+/* Counts the edges of vertex v, and fills its row, if it has one, from the diagonal on. A column without a
+ * row adds to the diagonal and is not written. An edge from v to itself has no weight and is twice in B. */
 static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t) {
+    const hdi_mesh *mesh = &x->mesh;
     hd_laplacian *lap = x->lap;
     const int32_t i = lap ? lap->row[v] : -1;
     int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
@@ -5805,8 +5771,15 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
             own = e.B / 6;
             continue;
         }
-        if (e.faces == 1) x->border[v] = 1;
-        hdi_edge_count(&x->mesh, v, &e, t);
+        t->n[HDI_NEGATIVE] += e.L > 0;
+        if (e.faces > 0 && (mesh->xyz || mesh->len)) {
+            t->n[HDI_EDGES]++;
+            x->border[v] |= e.faces == 1;
+            if (e.faces == 1) t->n[HDI_BOUNDARY]++;
+            else if (e.faces > 2) t->n[HDI_NONMANIFOLD]++;
+            else if (e.forward != 1) t->n[HDI_MISORIENTED]++;
+            t->length += mesh->len ? e.size : hdi_edge_length(mesh->xyz, v, e.to);
+        }
         if (i < 0) continue;
         if (j < 0) {
             sum += e.L;
@@ -5841,8 +5814,8 @@ static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
     x.mesh.tally[begin / hdi_block_size(x.mesh.n)] = tally;
 }
 
-/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What flows
- * to an earlier vertex without a row is found once more. */
+/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What an
+ * earlier vertex without a row shares with a later one is found once more. */
 static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
     const int64_t *ptr = lap->L.row_ptr;
     double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
@@ -5882,9 +5855,8 @@ static void hdi_rows_masses(const hdi_mesh *mesh, hd_laplacian *lap) {
         const double area = mesh->area[f], share = area / (double)(k = hdi_face_size(mesh, f));
         for (c = begin; c < begin + k && area > 0; c++) {
             i = lap->row[mesh->tri[c]];
-            if (i < 0) continue;
-            lap->mass[i] += lap->kind == HD_LAPLACIAN_VORONOI_COT
-                                ? hdi_mixed_mass(mesh->cot + begin, c - begin, area) : share;
+            if (i >= 0) lap->mass[i] += lap->kind == HD_LAPLACIAN_VORONOI_COT
+                                            ? hdi_mixed_mass(mesh->cot + begin, c - begin, area) : share;
         }
     }
 }
@@ -5919,10 +5891,9 @@ static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
     return all;
 }
 
-static HDI_INLINE void hdi_rows_link(int64_t *HDI_RESTRICT first, uint64_t *HDI_RESTRICT link, int32_t v,
-                                     int32_t w, int64_t number) {
-    const int64_t at = first[hdi_low32(v, w)]++;
-    if (link) link[at] = (uint64_t)hdi_high32(v, w) << 32 | (uint64_t)number;
+static HDI_INLINE void hdi_rows_link(const hdi_rows *x, int32_t v, int32_t w, int64_t corner) {
+    const int64_t at = x->first[hdi_low32(v, w)]++;
+    if (x->link) x->link[at] = (uint64_t)hdi_high32(v, w) << 32 | (uint64_t)corner;
 }
 
 /* Counts the links of all vertices; once there is room, lists them. */
@@ -5935,14 +5906,13 @@ static void hdi_rows_links(const hdi_rows *x) {
         k = hdi_face_size(mesh, f);
         if (!(mesh->area[f] > 0)) continue;
         if (!hdi_is_poly(mesh)) {
-            hdi_rows_link(x->first, x->link, v[0], v[1], begin);
-            hdi_rows_link(x->first, x->link, v[1], v[2], begin + 1);
-            hdi_rows_link(x->first, x->link, v[2], v[0], begin + 2);
+            hdi_rows_link(x, v[0], v[1], begin);
+            hdi_rows_link(x, v[1], v[2], begin + 1);
+            hdi_rows_link(x, v[2], v[0], begin + 2);
             continue;
         }
         for (c = 0; c < k; c++)
-            for (d = c + 1; d < k; d++)
-                hdi_rows_link(x->first, x->link, v[c], v[d], begin + (v[c] < v[d] ? d : c));
+            for (d = c + 1; d < k; d++) hdi_rows_link(x, v[c], v[d], begin + (v[c] < v[d] ? d : c));
     }
 }
 
@@ -5963,11 +5933,9 @@ static void hdi_repeats_task(void *arg, int64_t begin, int64_t end) {
     mesh->tally[begin / hdi_block_size(mesh->m)].n[HDI_REPEATED_FACE] = n;
 }
 
-/* Finds faces that repeat others, and lists the links, in s. In covers faces repeat others by right; the stars
- * of points have different ones. */
+/* Finds faces that repeat others, which copies do by right, and lists the links, in s. */
 static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     const int32_t n = mesh->n;
-    int32_t repeated;
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
     x->list = HDI_TAKE(s, hdi_pair, mesh->m);
@@ -5979,9 +5947,8 @@ static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_repor
     if (s->e->status < 0) return s->e->status;
     if (!mesh->copies) {
         hdi_parallel_ranges(s->ctx, mesh->m, hdi_block_size(mesh->m), hdi_repeats_task, x);
-        repeated = (int32_t)hdi_tally_all(mesh, mesh->m).n[HDI_REPEATED_FACE];
-        rep->n_repeated_face += repeated;
-        rep->n_faces_used -= repeated;
+        rep->n_repeated_face = (int32_t)hdi_tally_all(mesh, mesh->m).n[HDI_REPEATED_FACE];
+        rep->n_faces_used -= rep->n_repeated_face;
     }
     hdi_rows_links(x);
     x->link = HDI_TAKE(s, uint64_t, hdi_prefix_sum(x->first, n));
@@ -6131,19 +6098,13 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     return hdi_progress(lap->context, "assemble", 0.8, s->e);
 }
 
-/* Reports the edges of a mesh, whose mean length is put into h. */
-static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hdi_scope *s) {
-    hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, s) < 0) return s->e->status;
-    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
-    hdi_rows_border(&x, lap);
-    return HD_OK;
-}
-
 /* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
-    if (hdi_mesh_corners(&z->mesh, s) < 0 || hdi_lap_edges(lap, &z->mesh, &z->unit, s) < 0)
+    hdi_rows x;
+    if (hdi_mesh_corners(&z->mesh, s) < 0 || hdi_rows_begin(&x, &z->mesh, &lap->mesh, s) < 0)
         return s->e->status;
+    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, &z->unit);
+    hdi_rows_border(&x, lap);
     if (lap->mesh.n_faces_used == 0)
         return hdi_fail(s->e, HD_ERR_EMPTY, in->points ? "the points' neighbourhoods make no triangle"
                                                        : "no vertex has mass");
@@ -6233,12 +6194,6 @@ static void hdi_component_sums(const hd_laplacian *lap, const double *weight, co
     memset(out, 0, (size_t)lap->n_components * sizeof *out);
     for (i = 0; i < lap->n_active; i++)
         if (x[i] != 0) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
-}
-
-/* x_i += value[component of i] */
-static void hdi_component_add(const hd_laplacian *lap, const double *value, double *x) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) x[i] += value[lap->component[i]];
 }
 
 /* ---- the caller's own matrices ---- */
@@ -12968,11 +12923,10 @@ static double hdi_row_diagonal(const hd_laplacian *lap, int32_t i) {
 
 /* sum_j (l |L_ij| + b |B_ij|) |x_j| of row i, with factors of |x_j| up to 1e140. x NULL: ones. */
 static double hdi_row_size(const hd_laplacian *lap, int32_t i, double l, double b, const double *x) {
-    const double *B = b != 0 ? lap->B : NULL;
-    double sum = B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
+    double sum = lap->B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
     int64_t p;
     for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-        const double m = l * fabs(lap->L.val[p]) + (B ? b * fabs(B[p]) : 0);
+        const double m = l * fabs(lap->L.val[p]) + (b != 0 && lap->B ? b * fabs(lap->B[p]) : 0);
         sum += x ? hdi_min(m, 1e140) * fabs(x[lap->L.col[p]]) : m;
     }
     return sum;
@@ -13892,7 +13846,7 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_sums(lap, lap->mass, lane->u, sums);
     for (c = 0; c < lap->n_components; c++)
         sums[c] = (c0 * lane->target[c] - sums[c]) / lap->component_mass[c];
-    hdi_component_add(lap, sums, lane->u);
+    for (c = 0; c < lap->n_active; c++) lane->u[c] += sums[lap->component[c]];
 }
 
 /* Bound on what rounding does to the heat of components, which are n sums of masses times values; to that of
