@@ -5761,7 +5761,7 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
     hd_laplacian *lap = x->lap;
     const int32_t i = lap ? lap->row[v] : -1;
     int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
-    double sum = 0, own = 0;
+    double own = 0;
     int leaks = 0;
     x->border[v] = 0;
     for (p = x->first[v]; p < x->first[v + 1];) {
@@ -5781,11 +5781,8 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
             t->length += mesh->len ? e.size : hdi_edge_length(mesh->xyz, v, e.to);
         }
         if (i < 0) continue;
-        if (j < 0) {
-            sum += e.L;
-            leaks |= e.L != 0;
-            continue;
-        }
+        leaks |= j < 0 && e.L != 0;
+        if (j < 0) continue;
         lap->L.col[at] = j;
         lap->L.val[at] = e.L;
         if (lap->B) lap->B[at] = e.B / 12;
@@ -5793,7 +5790,7 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t)
     }
     if (i < 0) return;
     lap->L.col[diagonal] = i;
-    lap->L.val[diagonal] = -sum;
+    lap->L.val[diagonal] = 0;
     /* a sixth of the areas that the mass has thirds of */
     if (lap->B) lap->B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + own;
     if (lap->holding) lap->holding->leak[v] = (char)leaks;
@@ -5814,8 +5811,8 @@ static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
     x.mesh.tally[begin / hdi_block_size(x.mesh.n)] = tally;
 }
 
-/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What an
- * earlier vertex without a row shares with a later one is found once more. */
+/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. Where some
+ * vertices have no row, what they share with others counts as well, in its place of the sum. */
 static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
     const int64_t *ptr = lap->L.row_ptr;
     double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
@@ -5824,15 +5821,16 @@ static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
     hdi_fill_i32(before, lap->n_active, 0);
     for (v = 0; v < lap->n; v++) {
         const int32_t i = lap->row[v];
-        for (p = x->first[v]; i < 0 && p < x->first[v + 1];) {
+        diagonal = i < 0 ? 0 : ptr[i + 1] - x->later[v] - 1;
+        for (p = x->first[v]; lap->n_held > 0 && p < x->first[v + 1];) {
             const hdi_edge e = hdi_rows_edge(x, v, &p);
-            if (lap->row[e.to] < 0) continue;
-            L[ptr[lap->row[e.to] + 1] - x->later[e.to] - 1] -= e.L;
-            lap->holding->leak[e.to] |= e.L != 0;
+            const int32_t j = e.to == v ? -1 : lap->row[e.to];
+            if (i >= 0 && e.to != v) L[diagonal] -= e.L;
+            if (j >= 0) L[ptr[j + 1] - x->later[e.to] - 1] -= e.L;
+            if (j >= 0 && i < 0) lap->holding->leak[e.to] |= e.L != 0;
         }
         if (i < 0) continue;
-        diagonal = ptr[i + 1] - x->later[v] - 1;
-        for (sum = L[diagonal], p = ptr[i]; p < diagonal; p++) sum -= L[p];
+        for (sum = 0, p = ptr[i]; p < diagonal; p++) sum -= L[p];
         for (p = diagonal + 1; p < ptr[i + 1]; p++) {
             q = ptr[col[p]] + before[col[p]]++;
             col[q] = i;
@@ -5840,7 +5838,7 @@ static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
             if (B) B[q] = B[p];
             sum -= L[p];
         }
-        L[diagonal] = sum;
+        if (lap->n_held == 0) L[diagonal] = sum;
         if (!B || lap->n_held == 0) continue;
         for (lap->mass[i] = 0, p = ptr[i]; p < ptr[i + 1]; p++) lap->mass[i] += B[p];
     }
