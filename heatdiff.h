@@ -5754,8 +5754,8 @@ static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *
     return e;
 }
 
-/* Counts the edges of vertex v, and fills its row, if it has one, from the diagonal on. A column without a
- * row adds to the diagonal and is not written. An edge from v to itself has no weight and is twice in B. */
+/* Counts the edges of vertex v, and fills its row, if it has one, behind the diagonal. A column without a row
+ * is not written. An edge from the vertex to itself has no weight, and is twice in its B. */
 static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t) {
     const hdi_mesh *mesh = &x->mesh;
     hd_laplacian *lap = x->lap;
@@ -5811,8 +5811,8 @@ static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
     x.mesh.tally[begin / hdi_block_size(x.mesh.n)] = tally;
 }
 
-/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. Where some
- * vertices have no row, what they share with others counts as well, in its place of the sum. */
+/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What is
+ * shared with vertices that are held counts as well, in its place of the sum. */
 static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
     const int64_t *ptr = lap->L.row_ptr;
     double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
