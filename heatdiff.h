@@ -1484,9 +1484,9 @@ static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out)
 
 /* Length without squares that underflow or overflow. */
 static HDI_INLINE double hdi_norm3(const double *a) {
-    const double m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
+    const double s = hdi_dot3(a, a), m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
-    if (m == 0 || (m > 1e-140 && m < 1e140)) return sqrt(hdi_dot3(a, a));
+    if ((s > 1e-280 && s < 1e280) || m == 0) return sqrt(s);
     b[0] = a[0] / m;
     b[1] = a[1] / m;
     b[2] = a[2] / m;
@@ -3885,7 +3885,7 @@ static hd_status hdi_coordinates_check(const double *xyz, int32_t n, int queries
     int64_t i;
     for (i = 0; i < hdi_triple(n); i++) {
         const int lost = !hdi_finite(xyz[i]);
-        if (!lost && fabs(xyz[i]) <= HDI_RANGE) continue;
+        if (hdi_bits(xyz[i]) << 1 <= hdi_bits(HDI_RANGE) << 1) continue;
         hdi_fail_face(e, lost ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, "a coordinate ", -1, i / 3, xyz[i]);
         if (queries) {
             e->row = e->vertex;
@@ -4204,7 +4204,7 @@ typedef struct hdi_mesh {
     double *g;          /* [3 corners] of polygons: (corner before - corner after) / (2 sqrt(area)) */
     double *w;          /* [2 corners] of polygons: see hdi_poly_frame; of those with three corners not set */
     int32_t *of;        /* [corners] of polygons: the face of a corner */
-    int64_t *at;        /* [n + 1] corners at each vertex, faces ascending, where there was an area */
+    int64_t *at;        /* [n + 1] if listed: corners at each vertex, of faces that had an area, ascending */
     int32_t *corner;    /* [corners] */
     struct hdi_tally *tally;    /* [HDI_BLOCKS_MOST] work */
 } hdi_mesh;
@@ -4229,6 +4229,10 @@ static HDI_INLINE int64_t hdi_face_begin(const hdi_mesh *mesh, int32_t f) {
     return hdi_is_poly(mesh) ? mesh->ptr[f] : hdi_triple(f);
 }
 
+static HDI_INLINE int64_t hdi_face_size(const hdi_mesh *mesh, int32_t f) {
+    return hdi_is_poly(mesh) ? mesh->ptr[f + 1] - mesh->ptr[f] : 3;
+}
+
 static HDI_INLINE int32_t hdi_corner_face(const hdi_mesh *mesh, int64_t c) {
     return hdi_is_poly(mesh) ? mesh->of[c] : (int32_t)c / 3;
 }
@@ -4240,12 +4244,12 @@ static const double *hdi_corner_at(const hdi_mesh *mesh, int64_t c) {
 /* The corners of the same face before and after c. */
 static HDI_INLINE int64_t hdi_corner_before(const hdi_mesh *mesh, int64_t c) {
     const int32_t f = hdi_corner_face(mesh, c);
-    return c > hdi_face_begin(mesh, f) ? c - 1 : hdi_face_begin(mesh, f + 1) - 1;
+    return c > hdi_face_begin(mesh, f) ? c - 1 : c + hdi_face_size(mesh, f) - 1;
 }
 
 static HDI_INLINE int64_t hdi_corner_after(const hdi_mesh *mesh, int64_t c) {
     const int32_t f = hdi_corner_face(mesh, c);
-    return c + 1 < hdi_face_begin(mesh, f + 1) ? c + 1 : hdi_face_begin(mesh, f);
+    return c + 1 < hdi_face_begin(mesh, f) + hdi_face_size(mesh, f) ? c + 1 : hdi_face_begin(mesh, f);
 }
 
 /* ---- what is refused ---- */
@@ -4264,11 +4268,11 @@ static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
             return hdi_fail_face(e, HD_ERR_STRUCTURE, "face_ptr descends", f, -1, (double)ptr[f + 1]);
     if (end > INT32_MAX) return hdi_fail(e, HD_ERR_TOO_LARGE, "more than 2^31 face corners");
     if (end > 0 && !tri) return hdi_missing(e);
-    for (f = 0, c = 0; f < m; f++)
-        for (end = ptr ? ptr[f + 1] : c + 3; c < end; c++)
-            if (tri[c] < 0 || tri[c] >= mesh->n)
-                return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1,
-                                     tri[c]);
+    for (c = 0; c < end; c++) {
+        if ((uint32_t)tri[c] < (uint32_t)mesh->n) continue;
+        for (f = ptr ? 0 : (int32_t)(c / 3); ptr && ptr[f + 1] <= c;) f++;
+        return hdi_fail_face(e, HD_ERR_INDEX, "a face names a vertex that does not exist", f, -1, tri[c]);
+    }
     return HD_OK;
 }
 
@@ -4419,9 +4423,9 @@ static HDI_INLINE double hdi_triangle_measure(const double *xyz, const int32_t *
     hdi_cross3(edge[2], edge[0], cross);
     twice = hdi_norm3(cross);
     if (!(twice > 0)) return 0;
-    cot[0] = -hdi_dot3(edge[1], edge[2]) / twice;
-    cot[1] = -hdi_dot3(edge[2], edge[0]) / twice;
-    cot[2] = -hdi_dot3(edge[0], edge[1]) / twice;
+    cot[0] = -1 / twice * hdi_dot3(edge[1], edge[2]);
+    cot[1] = -1 / twice * hdi_dot3(edge[2], edge[0]);
+    cot[2] = -1 / twice * hdi_dot3(edge[0], edge[1]);
     return twice / 2;
 }
 
@@ -4564,7 +4568,7 @@ static int64_t hdi_block_size(int64_t n) {
 /* What is counted of faces and edges. */
 enum hdi_counted {
     HDI_USED, HDI_REPEATED_CORNER, HDI_ZERO_AREA, HDI_REPEATED_FACE,
-    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_COUNTED
+    HDI_EDGES, HDI_BOUNDARY, HDI_NONMANIFOLD, HDI_MISORIENTED, HDI_NEGATIVE, HDI_LOOPS, HDI_COUNTED
 };
 
 /* What a block of faces or of vertices adds to the report. */
@@ -4607,13 +4611,13 @@ static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
 
 /* Area of face f, and what is kept of its corners. 0: it is left out; negative: as it was before. */
 static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_tally *t) {
-    const int64_t begin = hdi_face_begin(mesh, f), k = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - begin : 3;
+    const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_size(mesh, f);
     const int32_t *v = mesh->tri + begin;
     double *cot = mesh->cot + begin, area, steepest = 0, weight = 0;
     int64_t c;
     if (mesh->area[f] < 0) return mesh->area[f];
     for (c = begin; hdi_is_poly(mesh) && c < begin + k; c++) mesh->of[c] = f;
-    if (hdi_corners_repeat(v, k)) {
+    if (hdi_is_poly(mesh) ? hdi_corners_repeat(v, k) : hdi_corners_repeat(v, 3)) {
         t->n[HDI_REPEATED_CORNER] += hdi_copies(mesh, f);
         return 0;
     }
@@ -4656,12 +4660,10 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
     return HD_OK;
 }
 
-/* Arrays for what is measured of the faces, in s, and the corners at each vertex. */
+/* Arrays for what is measured of the faces, in s. */
 static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     const int64_t n = hdi_face_begin(mesh, mesh->m);
     mesh->area = HDI_TAKE_ZERO(s, double, mesh->m);
-    mesh->at = HDI_TAKE(s, int64_t, (int64_t)mesh->n + 1);
-    mesh->corner = HDI_TAKE(s, int32_t, n);
     mesh->tally = HDI_TAKE(s, hdi_tally, HDI_BLOCKS_MOST);
     if (!hdi_is_poly(mesh)) mesh->cot = HDI_TAKE(s, double, n);
     if (!hdi_is_poly(mesh)) return s->e->status;
@@ -4671,26 +4673,32 @@ static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     return s->e->status;
 }
 
-/* Lists the corners at all vertices, of the faces that have an area. */
-static void hdi_mesh_corners(hdi_mesh *mesh) {
-    int64_t *HDI_RESTRICT at = mesh->at, c, end;
+/* Lists the corners at all vertices, of the faces that have an area, in s. */
+static hd_status hdi_mesh_corners(hdi_mesh *mesh, hdi_scope *s) {
+    int64_t *HDI_RESTRICT at = mesh->at = HDI_TAKE_ZERO(s, int64_t, (int64_t)mesh->n + 1), c, end;
     int32_t f;
-    memset(at, 0, ((size_t)mesh->n + 1) * sizeof *at);
+    mesh->corner = HDI_TAKE(s, int32_t, hdi_face_begin(mesh, mesh->m));
+    if (s->e->status < 0) return s->e->status;
     for (f = 0, c = 0; f < mesh->m; f++)
-        for (end = hdi_face_begin(mesh, f + 1); c < end; c++) at[mesh->tri[c]] += mesh->area[f] > 0;
+        for (end = c + hdi_face_size(mesh, f); c < end; c++) at[mesh->tri[c]] += mesh->area[f] > 0;
     hdi_prefix_sum(at, mesh->n);
     for (f = 0, c = 0; f < mesh->m; f++, c = end) {
-        end = hdi_face_begin(mesh, f + 1);
+        end = c + hdi_face_size(mesh, f);
         for (; mesh->area[f] > 0 && c < end; c++) mesh->corner[at[mesh->tri[c]]++] = (int32_t)c;
     }
     memmove(at + 1, at, (size_t)mesh->n * sizeof *at);           /* each has moved on to the next */
     at[0] = 0;
+    return HD_OK;
 }
 
-/* Of a face with smallest corner c the two corners beside that, which tell triangles apart. */
-static HDI_INLINE uint64_t hdi_corner_key(const hdi_mesh *mesh, int64_t c) {
-    const int32_t a = mesh->tri[hdi_corner_before(mesh, c)], b = mesh->tri[hdi_corner_after(mesh, c)];
-    return (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
+/* The smallest vertex of face f; n: it has no corners. */
+static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f) {
+    const int32_t *v = mesh->tri + hdi_face_begin(mesh, f);
+    int32_t least = mesh->n;
+    int64_t k;
+    if (!hdi_is_poly(mesh)) return hdi_low32(hdi_low32(v[0], v[1]), v[2]);
+    for (k = 0; k < hdi_face_size(mesh, f); k++) least = hdi_low32(least, v[k]);
+    return least;
 }
 
 /* Have the faces of c and d, whose keys are the same, their corners in the same cyclic order? */
@@ -4705,31 +4713,29 @@ static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
     return 0;
 }
 
-/* Of the faces with v as their smallest vertex those get area 0 that have the corners of an earlier one in
- * the same cyclic order, in either direction. Returns their number. face: room for them. */
-static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t v, hdi_pair *face) {
-    int32_t p, q, n = 0, count = 0;
-    int64_t at, d;
-    for (at = mesh->at[v + 1]; at-- > mesh->at[v];) {
-        const int32_t c = mesh->corner[at], f = hdi_corner_face(mesh, c);
-        const uint64_t key = hdi_corner_key(mesh, c);
-        int smallest = key >> 32 >= (uint64_t)v;
-        for (d = hdi_face_begin(mesh, f); smallest && d < hdi_face_begin(mesh, f + 1); d++)
-            smallest = mesh->tri[d] >= v;
-        if (!smallest && !mesh->len) break;      /* faces are sorted by their smallest corners */
-        face[n].key = key;
-        face[n].id = c;
-        n += smallest;
+/* Of the faces from f on with its smallest vertex those get area 0 that have the corners of an earlier one in
+ * the same cyclic order, in either direction. Counts them. Returns the face behind. list: room for all. */
+static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t f, hdi_pair *list, int64_t *count) {
+    const int32_t v = hdi_face_least(mesh, f);
+    int32_t p, q, a, b, n = 0;
+    int64_t c;
+    for (; f < mesh->m && hdi_face_least(mesh, f) == v; f++) {
+        if (!(mesh->area[f] > 0)) continue;
+        for (c = hdi_face_begin(mesh, f); mesh->tri[c] != v;) c++;
+        a = mesh->tri[hdi_corner_before(mesh, c)];         /* which tell triangles apart */
+        b = mesh->tri[hdi_corner_after(mesh, c)];
+        list[n].key = (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
+        list[n++].id = c;
     }
-    hdi_sort_pairs(face, n);
+    if (n > 1) hdi_sort_pairs(list, n);
     for (p = 1; p < n; p++) {
-        for (q = p - 1; q >= 0 && face[q].key == face[p].key; q--)
-            if (hdi_corner_same(mesh, face[p].id, face[q].id)) break;
-        if (q < 0 || face[q].key != face[p].key) continue;
-        mesh->area[hdi_corner_face(mesh, face[p].id)] = 0;
-        count++;
+        for (q = p - 1; q >= 0 && list[q].key == list[p].key; q--)
+            if (hdi_corner_same(mesh, list[p].id, list[q].id)) break;
+        if (q < 0 || list[q].key != list[p].key) continue;
+        mesh->area[hdi_corner_face(mesh, list[p].id)] = 0;
+        ++*count;
     }
-    return count;
+    return f;
 }
 
 /* ---- edges ---- */
@@ -4757,12 +4763,6 @@ static int32_t hdi_side_edge(const hdi_mesh *mesh, int32_t s, int32_t *v, hdi_pa
     return mesh->area[s / 3] > 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
 }
 
-/* The length of the side of a triangle that begins at corner c. */
-static HDI_INLINE double hdi_side_length(const hdi_mesh *mesh, int64_t c) {
-    return mesh->len ? mesh->len[c]
-                     : hdi_edge_length(mesh->xyz, mesh->tri[c], mesh->tri[hdi_corner_after(mesh, c)]);
-}
-
 /* Do the faces at each edge agree on its length? */
 static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
@@ -4771,44 +4771,44 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     for (c = 0; c < 3 * mesh->m && s->e->status >= 0; c++) {
         const double b = mesh->len[c], a = hdi_side_edge(mesh, c, &v, list) > 0 ? mesh->len[list->id] : b;
         if (fabs(a - b) > HDI_LENGTH_AGREE * hdi_max(a, b))
-            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two faces give their edge different lengths", c / 3, v, b);
+            hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two faces give their edge different lengths",
+                          hdi_face_name(mesh, c / 3), v, b);
     }
     return hdi_scope_end(&own);
 }
 
-/* Faces in space become a copy in s, sorted by smallest corners: what neighbours need is then at hand. */
+/* Faces become a copy in s, sorted by smallest corners: what neighbours need is then at hand. */
 static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     const int32_t *v = mesh->tri, m = mesh->m;
     int32_t *low = HDI_TAKE(&own, int32_t, m), *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 2), f;
     int32_t *tri = HDI_TAKE(s, int32_t, hdi_face_begin(mesh, m)), *face = HDI_TAKE(s, int32_t, m);
-    int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, (int64_t)m + 1) : NULL, n, k;
+    int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, (int64_t)m + 1) : NULL, n, k, q;
+    double *len = mesh->len ? HDI_TAKE(s, double, hdi_triple(m)) : NULL;
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (f = 0; f < m; f++) {
-        low[f] = mesh->n;                        /* of a face without corners */
-        for (k = hdi_face_begin(mesh, f); k < hdi_face_begin(mesh, f + 1); k++)
-            low[f] = hdi_low32(low[f], v[k]);
-    }
+    for (f = 0; f < m; f++) low[f] = hdi_face_least(mesh, f);
     hdi_group(low, m, mesh->n + 1, at, face);
     for (f = 0, n = 0; f < m; f++, n += k) {
-        k = hdi_face_begin(mesh, face[f] + 1) - hdi_face_begin(mesh, face[f]);
+        const int32_t *from = v + hdi_face_begin(mesh, face[f]);
+        k = hdi_face_size(mesh, face[f]);
         if (ptr) ptr[f] = n;
-        if (k > 0) memcpy(tri + n, v + hdi_face_begin(mesh, face[f]), (size_t)k * sizeof *tri);
+        for (q = 0; q < k; q++) tri[n + q] = from[q];
+        for (q = 0; len && q < 3; q++) len[n + q] = mesh->len[hdi_triple(face[f]) + q];
         face[f] = hdi_face_name(mesh, face[f]);
     }
     if (ptr) ptr[m] = n;
     mesh->tri = tri;
     mesh->ptr = ptr;
     mesh->face = face;
+    mesh->len = len;
     return hdi_scope_end(&own);
 }
 
-/* Measures the faces of a mesh that is checked and lists the corners at each vertex, in s. */
+/* Measures the faces of a mesh that is checked, in s. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    if (mesh->xyz && !mesh->copies && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
+    if (!mesh->copies && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
     if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
-    hdi_mesh_corners(mesh);
-    return mesh->len ? hdi_lengths_agree(mesh, s) : HD_OK;
+    return mesh->len && hdi_mesh_corners(mesh, s) >= 0 ? hdi_lengths_agree(mesh, s) : s->e->status;
 }
 
 /* Makes triangles of polygons, in s: fans from the first corner of each face. Errors name the polygons. */
@@ -5056,10 +5056,13 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
     z->len = HDI_TAKE(s, double, hdi_triple(mesh->m));
     if (s->e->status < 0) return s->e->status;
     for (f = 0; f < mesh->m; f++) {
+        const int32_t *v = mesh->tri + hdi_triple(f);
         double *len = z->len + hdi_triple(f), spare;
         if (!(mesh->area[f] > 0)) continue;
         z->total += mesh->area[f] * hdi_copies(mesh, f);
-        for (q = 0; q < 3; q++) len[q] = hdi_side_length(mesh, hdi_triple(f) + q) / z->unit;
+        for (q = 0; q < 3; q++)
+            len[q] = (mesh->len ? mesh->len[hdi_triple(f) + q]
+                                : hdi_edge_length(mesh->xyz, v[q], v[hdi_next3[q]])) / z->unit;
         spare = hdi_min(hdi_min(len[0] + len[1] - len[2], len[2] + len[0] - len[1]),
                         len[2] + len[1] - len[0]);
         if (delta >= 0 && spare < delta) rep->n_mollified += hdi_copies(mesh, f);
@@ -5442,7 +5445,6 @@ static hd_status hdi_cover_flat(hdi_surface *z, const hdi_cover *c, hd_mesh_repo
         hdi_flat_add(z, v, len, c->area[f], 1, &steepest);
     }
     rep->smallest_intrinsic_angle = hdi_finite(steepest) ? atan2(1, steepest) : 0;
-    hdi_mesh_corners(&z->flat);
     return HD_OK;
 }
 
@@ -5475,43 +5477,33 @@ static hd_status hdi_soup_delaunay(hdi_surface *z, int close, hd_mesh_report *re
  * listed there. */
 
 /* ---- rows from corners ----
- * Every mesh is faces with k corners and an element matrix each. A row of the pair is a sum over the corners
- * at its vertex, in the order of the faces: both rows of a pair of vertices add the same numbers in the same
- * order, so that L is symmetric to the last bit, and any thread can fill any row. */
+ * Every mesh is faces with k corners and an element matrix each. What a row has behind its diagonal are sums
+ * over links, the pairs of corners of a face, in the order of the faces: any thread can fill that of any row.
+ * One thread copies it into the later rows: L is symmetric to the last bit. */
 
 /* Is B the identity? */
 static int hdi_is_plain(hd_laplacian_kind kind) {
     return kind == HD_LAPLACIAN_COT || kind == HD_LAPLACIAN_EXP;
 }
 
-/* What a vertex shares with another one. */
-typedef struct hdi_entry {
+/* What a vertex shares with a later one. */
+typedef struct hdi_edge {
     double L, B;                /* sums of elements, and of areas */
     double size;                /* length of the side, where lengths are given; or of what L sums up */
     int32_t to;                 /* the other one */
     int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
-} hdi_entry;
+} hdi_edge;
 
-/* A vertex and the others that it shares something with. */
-typedef struct hdi_ring {
-    int32_t n;
-    uint32_t base;              /* grows from vertex to vertex, so that places need not be cleared */
-    uint32_t *place;            /* [vertices] base plus the number of its entry; below base: it has none */
-    hdi_entry *at;              /* [most] zeros from n on */
-    hdi_pair *list;             /* [most] work */
-} hdi_ring;
-
-/* Blocks of vertices are worked on by so many tasks, each with its own ring. */
-enum { HDI_STRANDS = 8 };
-
-/* Rows of a mesh, and work. Updates of a mesh keep one; those of the caller's matrices need nothing. */
+/* The links of a mesh, of faces with an area, and work. Updates of a mesh keep one; those of the caller's
+ * matrices need nothing. */
 typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
-    int32_t strands;
-    hdi_ring ring[HDI_STRANDS];
-    int counting;               /* the entries of rows are counted */
-    int32_t *count;             /* [n] entries of a row, -1: the vertex has no face; then work */
+    int64_t *first;             /* [n + 1] the links of each vertex to later ones, or to itself */
+    uint64_t *link;             /* that << 32 | its corner, of triangles where the side begins; ascending */
+    hdi_pair *list;             /* [m] work */
+    int32_t *count, *later;     /* [n] entries of a row, -1: it has no face; those behind the diagonal */
+    int32_t *work;              /* [n] */
     char *border;               /* [n] 1: at an edge with one face */
 } hdi_rows;
 
@@ -5713,14 +5705,6 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
  * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
  * number for all faces. On triangles the second part is zero, and is not computed. */
 
-/* L_f between the different corners c and d of a face of k corners; beside: they share an edge of it. The
- * same to the last bit for (d, c). */
-static HDI_INLINE double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t d, int64_t k, int beside) {
-    const double *u = mesh->w + 2 * c, *v = mesh->w + 2 * d,
-                 first = hdi_dot3(mesh->g + 3 * c, mesh->g + 3 * d);
-    return k == 3 ? first : first - mesh->lambda * (beside + (u[0] * v[0] + u[1] * v[1]));
-}
-
 /* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
  * + |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three
  * products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
@@ -5728,258 +5712,271 @@ static HDI_INLINE double hdi_poly_entry(const hdi_mesh *mesh, int64_t c, int64_t
  * smallest angle, has a quarter. */
 static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
     const double least = hdi_min(cot[0], hdi_min(cot[1], cot[2]));
-    const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
-    const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1];
-    if (least < 0) return cot[q] < 0 ? area / 2 : area / 4;
-    if (!(sum > 1e-100)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
-    return area / 4 + area / 4 * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / sum);
+    const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2])), obtuse = least < 0;
+    const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1], size = sum > 1e-100 ? sum : 1;
+    if (size != sum && !(least < 0)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
+    return area / 4 * (1 + obtuse * (cot[q] < 0) +
+                       (1 - obtuse) * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / size));
 }
 
-/* How many others there are at vertex v, and itself. */
-static int32_t hdi_ring_count(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
-    const int64_t end = mesh->at[v + 1];
-    uint32_t *HDI_RESTRICT place = r->place, base = ++r->base;
-    int32_t n = 0;
-    int64_t p, k;
-    for (p = mesh->at[v]; p < end; p++) {
-        const int32_t f = hdi_corner_face(mesh, mesh->corner[p]), *w = mesh->tri + hdi_face_begin(mesh, f);
-        const int64_t size = hdi_is_poly(mesh) ? mesh->ptr[f + 1] - mesh->ptr[f] : 3;
-        for (k = 0; k < size; k++) {
-            n += place[w[k]] < base;
-            place[w[k]] = base;
+/* Adds a link of vertex v: an entry of L_f. */
+static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t link, hdi_edge *e) {
+    const int32_t q = (int32_t)(uint32_t)link, f = hdi_corner_face(mesh, q), *c;
+    const int64_t begin = hdi_face_begin(mesh, f);
+    const double *cot = mesh->cot, *w, *own;
+    int32_t faces = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, forward = mesh->tri[q] == v;
+    if (!(mesh->area[f] > 0)) return;
+    if (hdi_is_poly(mesh)) {
+        for (c = mesh->corner + mesh->at[v]; mesh->of[*c] != f;) c++;
+        forward = hdi_corner_after(mesh, *c) == q;
+        faces = forward || hdi_corner_after(mesh, q) == *c;
+        e->L += hdi_dot3(mesh->g + hdi_triple(*c), mesh->g + hdi_triple(q));
+        w = mesh->w + 2 * (int64_t)*c;
+        own = mesh->w + 2 * (int64_t)q;
+        if (hdi_face_size(mesh, f) > 3) e->L -= mesh->lambda * (faces + (w[0] * own[0] + w[1] * own[1]));
+    } else {
+        e->L -= cot[begin + hdi_prev3[q - begin]] / 2;
+    }
+    if (mesh->len) e->size = mesh->len[q];
+    else if (!mesh->xyz) e->size += fabs(cot[begin]) + fabs(cot[begin + 1]) + fabs(cot[begin + 2]);
+    e->B += mesh->area[f];
+    e->faces += faces;
+    e->forward += forward ? faces - odd : odd;
+}
+
+/* The edge of vertex v whose links begin at p, which moves on. Without coordinates, weights above zero are
+ * there by rounding only: they become zero when they are below 1e-13 of the cotangents that they sum up. */
+static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *p) {
+    const uint64_t *link = x->link + *p, *end = x->link + x->first[v + 1];
+    hdi_edge e = {0, 0, 0, 0, 0, 0};
+    for (e.to = (int32_t)(*link >> 32); link < end && (int32_t)(*link >> 32) == e.to; link++)
+        hdi_link_add(&x->mesh, v, *link, &e);
+    *p = link - x->link;
+    if (!x->mesh.xyz && !x->mesh.len && e.L > 0 && e.L <= 1e-13 * e.size) e.L = 0;
+    return e;
+}
+
+/* Counts the edges of vertex v, and fills its row, if it has one, behind the diagonal. A column without a row
+ * is not written. An edge from the vertex to itself has no weight, and is twice in its B. */
+static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t) {
+    const hdi_mesh *mesh = &x->mesh;
+    hd_laplacian *lap = x->lap;
+    const int32_t i = lap ? lap->row[v] : -1;
+    int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
+    double own = 0;
+    int leaks = 0;
+    x->border[v] = 0;
+    for (p = x->first[v]; p < x->first[v + 1];) {
+        const hdi_edge e = hdi_rows_edge(x, v, &p);
+        const int32_t j = i < 0 ? -1 : lap->row[e.to];
+        if (e.to == v) {
+            own = e.B / 6;
+            continue;
+        }
+        t->n[HDI_NEGATIVE] += e.L > 0;
+        if (e.faces > 0 && (mesh->xyz || mesh->len)) {
+            t->n[HDI_EDGES]++;
+            x->border[v] |= e.faces == 1;
+            if (e.faces == 1) t->n[HDI_BOUNDARY]++;
+            else if (e.faces > 2) t->n[HDI_NONMANIFOLD]++;
+            else if (e.forward != 1) t->n[HDI_MISORIENTED]++;
+            t->length += mesh->len ? e.size : hdi_edge_length(mesh->xyz, v, e.to);
+        }
+        if (i < 0) continue;
+        leaks |= j < 0 && e.L != 0;
+        if (j < 0) continue;
+        lap->L.col[at] = j;
+        lap->L.val[at] = e.L;
+        if (lap->B) lap->B[at] = e.B / 12;
+        at++;
+    }
+    if (i < 0) return;
+    lap->L.col[diagonal] = i;
+    lap->L.val[diagonal] = 0;
+    /* a sixth of the areas that the mass has thirds of */
+    if (lap->B) lap->B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + own;
+    if (lap->holding) lap->holding->leak[v] = (char)leaks;
+}
+
+static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
+    hdi_rows x = *(const hdi_rows *)arg;
+    hdi_tally tally = hdi_tally_none;
+    int32_t v;
+    if (x.mesh.xyz && !x.mesh.ptr && !x.mesh.copies) {     /* as the compiler is to know */
+        x.mesh.ptr = NULL;
+        x.mesh.len = NULL;
+        x.mesh.copies = x.mesh.odd = NULL;
+        for (v = (int32_t)begin; v < end; v++) hdi_rows_fill(&x, v, &tally);
+    } else {
+        for (v = (int32_t)begin; v < end; v++) hdi_rows_fill(&x, v, &tally);
+    }
+    x.mesh.tally[begin / hdi_block_size(x.mesh.n)] = tally;
+}
+
+/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What is
+ * shared with vertices that are held counts as well, in its place of the sum. */
+static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
+    const int64_t *ptr = lap->L.row_ptr;
+    double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
+    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT before = x->work, v;
+    int64_t p, q, diagonal;
+    hdi_fill_i32(before, lap->n_active, 0);
+    for (v = 0; v < lap->n; v++) {
+        const int32_t i = lap->row[v];
+        diagonal = i < 0 ? 0 : ptr[i + 1] - x->later[v] - 1;
+        for (p = x->first[v]; lap->n_held > 0 && p < x->first[v + 1];) {
+            const hdi_edge e = hdi_rows_edge(x, v, &p);
+            const int32_t j = e.to == v ? -1 : lap->row[e.to];
+            if (i >= 0 && e.to != v) L[diagonal] -= e.L;
+            if (j >= 0) L[ptr[j + 1] - x->later[e.to] - 1] -= e.L;
+            if (j >= 0 && i < 0) lap->holding->leak[e.to] |= e.L != 0;
+        }
+        if (i < 0) continue;
+        for (sum = 0, p = ptr[i]; p < diagonal; p++) sum -= L[p];
+        for (p = diagonal + 1; p < ptr[i + 1]; p++) {
+            q = ptr[col[p]] + before[col[p]]++;
+            col[q] = i;
+            L[q] = L[p];
+            if (B) B[q] = B[p];
+            sum -= L[p];
+        }
+        if (lap->n_held == 0) L[diagonal] = sum;
+        if (!B || lap->n_held == 0) continue;
+        for (lap->mass[i] = 0, p = ptr[i]; p < ptr[i + 1]; p++) lap->mass[i] += B[p];
+    }
+}
+
+/* Masses that the faces give the rows. */
+static void hdi_rows_masses(const hdi_mesh *mesh, hd_laplacian *lap) {
+    int64_t k, begin = 0, c;
+    int32_t f, i;
+    for (i = 0; i < lap->n_active; i++) lap->mass[i] = hdi_is_plain(lap->kind);
+    for (f = 0; f < mesh->m && !hdi_is_plain(lap->kind); f++, begin += k) {
+        const double area = mesh->area[f], share = area / (double)(k = hdi_face_size(mesh, f));
+        for (c = begin; c < begin + k && area > 0; c++) {
+            i = lap->row[mesh->tri[c]];
+            if (i >= 0) lap->mass[i] += lap->kind == HD_LAPLACIAN_VORONOI_COT
+                                            ? hdi_mixed_mass(mesh->cot + begin, c - begin, area) : share;
+        }
+    }
+}
+
+/* Unites the vertices of the border, of which those are marked that have an edge of it to a later one, and
+ * marks the others. Returns the number of loops. */
+static int32_t hdi_rows_loops(const hdi_rows *x) {
+    int32_t v, n = 0;
+    int64_t p;
+    hdi_fill_own(x->work, x->mesh.n);
+    for (v = 0; v < x->mesh.n; v++) {
+        n += x->border[v] > 0;                   /* a set, until it is united with another one */
+        for (p = x->first[v]; (x->border[v] & 1) && p < x->first[v + 1];) {
+            const hdi_edge e = hdi_rows_edge(x, v, &p);
+            if (e.faces != 1) continue;
+            n -= hdi_unite(x->work, v, e.to);
+            x->border[e.to] |= 2;
         }
     }
     return n;
 }
 
-/* Adds what face f adds to the entry of the vertex at its corner d; c: the corner of the ring's own vertex.
- * after: d is the next one; beside: it shares an edge with c. */
-static HDI_INLINE void hdi_ring_add(hdi_ring *r, const hdi_mesh *mesh, int32_t f, int64_t c, int64_t d,
-                                    int after, int beside) {
-    const int32_t copies = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, w = mesh->tri[d];
-    const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_begin(mesh, f + 1) - begin;
-    const uint32_t last = (uint32_t)r->n, place = r->place[w] - r->base, at = place < last ? place : last;
-    const double *cot = mesh->cot + begin;
-    hdi_entry *e = r->at + at;
-    r->n += at == last;
-    r->place[w] = r->base + at;
-    e->to = w;
-    if (!(mesh->area[f] > 0)) return;
-    if (hdi_is_poly(mesh)) e->L += hdi_poly_entry(mesh, c, d, k, beside);
-    else e->L -= cot[3 + 2 * begin - c - d] / 2;
-    if (mesh->len) e->size = mesh->len[after ? c : d];
-    else if (!mesh->xyz) e->size += fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]);
-    e->B += mesh->area[f];
-    e->faces += beside ? copies : 0;
-    e->forward += after ? copies - odd : odd;
-}
-
-/* What vertex v shares with itself, and then with each other one: sums over the faces, in their order. plain:
- * triangles in space, without copies. Without coordinates, weights above zero, which are there by rounding
- * only, become zero when they are below 1e-13 of the cotangents that they are made of. */
-static HDI_INLINE void hdi_ring_make(hdi_ring *to, const hdi_mesh *m, int32_t v, int plain) {
-    hdi_mesh mesh = *m;                          /* local, as what is written below is not part of it */
-    hdi_ring r = *to;
-    int64_t p, q;
-    int32_t k;
-    if (plain) {                                 /* as the compiler is to know */
-        mesh.ptr = NULL;
-        mesh.len = NULL;
-        mesh.copies = mesh.odd = NULL;
-    }
-    memset(r.at, 0, (size_t)r.n * sizeof *r.at);
-    if (r.base > UINT32_MAX / 2) memset(r.place, 0, (size_t)mesh.n * sizeof *r.place);
-    r.base = r.base > UINT32_MAX / 2 ? 1 : r.base + (uint32_t)r.n + 1;
-    r.n = 1;
-    r.at->to = v;
-    r.place[v] = r.base;
-    for (p = mesh.at[v]; p < m->at[v + 1]; p++) {
-        const int64_t c = mesh.corner[p];
-        const int32_t f = hdi_corner_face(&mesh, c);
-        const int64_t begin = hdi_face_begin(&mesh, f), end = hdi_face_begin(&mesh, f + 1);
-        const int64_t next = c + 1 < end ? c + 1 : begin, before = c > begin ? c - 1 : end - 1;
-        if (plain) {
-            hdi_ring_add(&r, &mesh, f, c, next, 1, 1);
-            hdi_ring_add(&r, &mesh, f, c, before, 0, 1);
-            continue;
-        }
-        for (q = begin; q < end; q++)
-            if (q != c) hdi_ring_add(&r, &mesh, f, c, q, q == next, q == next || q == before);
-    }
-    *to = r;
-    for (k = 0; k < r.n && !mesh.xyz && !mesh.len; k++)
-        if (r.at[k].L > 0 && r.at[k].L <= 1e-13 * r.at[k].size) r.at[k].L = 0;
-}
-
-static void hdi_ring_of(hdi_ring *r, const hdi_mesh *mesh, int32_t v) {
-    if (mesh->xyz && !mesh->ptr && !mesh->copies) hdi_ring_make(r, mesh, v, 1);
-    else hdi_ring_make(r, mesh, v, 0);
-}
-
-static double hdi_vertex_mass(const hdi_mesh *mesh, hd_laplacian_kind kind, int32_t v) {
-    double mass = 0;
-    int64_t p;
-    for (p = mesh->at[v]; p < mesh->at[v + 1]; p++) {
-        const int64_t c = mesh->corner[p];
-        const int32_t f = hdi_corner_face(mesh, c);
-        const int64_t begin = hdi_face_begin(mesh, f), k = hdi_face_begin(mesh, f + 1) - begin;
-        if (!(mesh->area[f] > 0)) continue;
-        mass += kind == HD_LAPLACIAN_VORONOI_COT ? hdi_mixed_mass(mesh->cot + begin, c - begin, mesh->area[f])
-                                                 : mesh->area[f] / (double)k;
-    }
-    return hdi_is_plain(kind) ? 1 : mass;
-}
-
-/* Counts an edge of vertex v, if it is one to a later vertex. */
-static HDI_INLINE void hdi_rows_edge(const hdi_rows *x, int32_t v, const hdi_entry *e, hdi_tally *t) {
-    const hdi_mesh *mesh = &x->mesh;
-    if (e->faces == 1) x->border[v] = 1;
-    if (e->to <= v) return;
-    t->n[HDI_NEGATIVE] += e->L > 0;
-    if (e->faces == 0 || (!mesh->xyz && !mesh->len)) return;
-    t->n[HDI_EDGES]++;
-    if (e->faces == 1) t->n[HDI_BOUNDARY]++;
-    else if (e->faces > 2) t->n[HDI_NONMANIFOLD]++;
-    else if (e->forward != 1) t->n[HDI_MISORIENTED]++;
-    t->length += mesh->len ? e->size : hdi_edge_length(mesh->xyz, v, e->to);
-}
-
-/* Counts the edges of vertex v, and fills its row in L and B, if it has one. A column without a row adds to
- * the diagonal and is not written; its room, which updates do not have any more, is marked. An edge from the
- * vertex to itself has no weight, and is twice in its B. */
-static void hdi_rows_fill(const hdi_rows *x, const hdi_ring *r, int32_t v, hdi_tally *t) {
-    hd_laplacian *lap = x->lap;
-    const int32_t i = lap ? lap->row[v] : -1;
-    double *B = lap ? lap->B : NULL, sum = 0, b_sum = 0, b_own = 0;
-    int64_t at = i < 0 ? 0 : lap->L.row_ptr[i], diagonal = 0;
-    int held = 0, leaks = 0;
-    int32_t k;
-    for (k = 0; k < r->n; k++) {
-        r->list[k].key = (uint64_t)r->at[k].to;
-        r->list[k].id = k;
-    }
-    hdi_sort_pairs(r->list, r->n);
-    for (k = 0; k < r->n; k++) {
-        const hdi_entry *e = r->at + r->list[k].id;
-        const int32_t j = i < 0 ? -1 : lap->row[e->to];
-        hdi_rows_edge(x, v, e, t);
-        if (i < 0) continue;
-        if (j == i) {
-            diagonal = at++;
-            b_own = e->B / 12;
-            continue;
-        }
-        sum += e->L;
-        held |= j < 0;
-        leaks |= j < 0 && e->L != 0;
-        if (j < 0) continue;
-        lap->L.col[at] = j;
-        lap->L.val[at] = e->L;
-        if (B) b_sum += B[at] = e->B / 12;
-        at++;
-    }
-    if (i < 0) return;
-    for (; at < lap->L.row_ptr[i + 1]; at++) lap->L.col[at] = -1;
-    lap->L.col[diagonal] = i;
-    lap->L.val[diagonal] = -sum;
-    lap->mass[i] = hdi_vertex_mass(&x->mesh, lap->kind, v);
-    /* a sixth of the areas that the mass has thirds of */
-    if (B) B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + b_own;
-    if (B && held) lap->mass[i] = b_sum + B[diagonal];
-    if (lap->holding) lap->holding->leak[v] = (char)leaks;
-}
-
-/* Vertex v: counts others, or fills its row. In covers faces repeat others by right. */
-static void hdi_rows_vertex(hdi_rows *x, hdi_ring *r, int32_t v, hdi_tally *t) {
-    const hdi_mesh *mesh = &x->mesh;
-    x->border[v] = 0;
-    if (x->counting) x->count[v] = -1;
-    if (mesh->at[v] == mesh->at[v + 1]) return;
-    if (x->counting) {
-        x->count[v] = hdi_ring_count(r, mesh, v);
-        if (mesh->xyz || mesh->len) t->n[HDI_REPEATED_FACE] += hdi_mesh_repeats(mesh, v, r->list);
-    } else {
-        hdi_ring_of(r, mesh, v);
-        hdi_rows_fill(x, r, v, t);
-    }
-}
-
-static void hdi_rows_task(void *arg, int64_t strand, int32_t worker) {
-    hdi_rows *x = (hdi_rows *)arg;
-    const int64_t n = x->mesh.n, size = hdi_block_size(n);
-    int64_t b;
-    int32_t v;
-    (void)worker;
-    for (b = strand; b * size < n; b += x->strands) {
-        x->mesh.tally[b] = hdi_tally_none;
-        for (v = (int32_t)(b * size); v < hdi_least(n, (b + 1) * size); v++)
-            hdi_rows_vertex(x, x->ring + strand, v, x->mesh.tally + b);
-    }
-}
-
 /* All rows of lap; NULL: of none. Returns what was counted. */
 static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
+    hdi_tally all;
     x->lap = lap;
-    hdi_parallel(ctx, x->strands, hdi_rows_task, x);
-    return hdi_tally_all(&x->mesh, x->mesh.n);
+    if (lap) hdi_rows_masses(&x->mesh, lap);
+    hdi_parallel_ranges(ctx, x->mesh.n, hdi_block_size(x->mesh.n), hdi_rows_task, x);
+    if (lap) hdi_rows_mirror(x, lap);
+    all = hdi_tally_all(&x->mesh, x->mesh.n);
+    all.n[HDI_LOOPS] = hdi_rows_loops(x);
+    return all;
 }
 
-/* Finds faces that repeat others and counts the entries of rows, in s. The corners of the mesh are listed. */
+static HDI_INLINE void hdi_rows_link(const hdi_rows *x, int32_t v, int32_t w, int64_t corner) {
+    const int64_t at = x->first[hdi_low32(v, w)]++;
+    if (x->link) x->link[at] = (uint64_t)hdi_high32(v, w) << 32 | (uint64_t)corner;
+}
+
+/* Counts the links of all vertices; once there is room, lists them. */
+static void hdi_rows_links(const hdi_rows *x) {
+    const hdi_mesh *mesh = &x->mesh;
+    const int32_t *v = mesh->tri;
+    int64_t c, d, k, begin = 0;
+    int32_t f;
+    for (f = 0; f < mesh->m; f++, begin += k, v += k) {
+        k = hdi_face_size(mesh, f);
+        if (!(mesh->area[f] > 0)) continue;
+        if (!hdi_is_poly(mesh)) {
+            hdi_rows_link(x, v[0], v[1], begin);
+            hdi_rows_link(x, v[1], v[2], begin + 1);
+            hdi_rows_link(x, v[2], v[0], begin + 2);
+            continue;
+        }
+        for (c = 0; c < k; c++)
+            for (d = c + 1; d < k; d++) hdi_rows_link(x, v[c], v[d], begin + (v[c] < v[d] ? d : c));
+    }
+}
+
+static void hdi_links_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_rows *x = (const hdi_rows *)arg;
+    int64_t v;
+    for (v = begin; v < end; v++) hdi_sort_keys(x->link + x->first[v], x->first[v + 1] - x->first[v]);
+}
+
+/* A block begins behind the faces that belong to the one before. */
+static void hdi_repeats_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_rows *x = (const hdi_rows *)arg;
+    const hdi_mesh *mesh = &x->mesh;
+    int64_t n = 0;
+    int32_t f = (int32_t)begin;
+    while (f > 0 && f < end && hdi_face_least(mesh, f) == hdi_face_least(mesh, f - 1)) f++;
+    while (f < end) f = hdi_mesh_repeats(mesh, f, x->list + f, &n);
+    mesh->tally[begin / hdi_block_size(mesh->m)].n[HDI_REPEATED_FACE] = n;
+}
+
+/* Finds faces that repeat others, which copies do by right, and lists the links, in s. */
 static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
     const int32_t n = mesh->n;
-    int32_t v, repeated;
-    int64_t p, most = 0;
-    hdi_ring all;
     memset(x, 0, sizeof *x);
-    memset(&all, 0, sizeof all);
     x->mesh = *mesh;
-    x->strands = hdi_is_serial(s->ctx) ? 1 : hdi_low32(HDI_STRANDS, n / (int32_t)hdi_block_size(n) + 1);
-    for (v = 0, p = 0; v < n; v++) {
-        int64_t here = 8;                        /* itself, and no line of a cache is shared */
-        for (; p < mesh->at[v + 1]; p++) {
-            const int32_t f = hdi_corner_face(mesh, mesh->corner[p]);
-            here += hdi_face_begin(mesh, f + 1) - hdi_face_begin(mesh, f) - 1;
-        }
-        most = hdi_most(most, here);
-    }
+    x->list = HDI_TAKE(s, hdi_pair, mesh->m);
+    x->first = HDI_TAKE_ZERO(s, int64_t, (int64_t)n + 1);
     x->count = HDI_TAKE(s, int32_t, n);
+    x->later = HDI_TAKE(s, int32_t, n);
+    x->work = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
-    all.at = HDI_TAKE_ZERO(s, hdi_entry, x->strands * most);
-    all.list = HDI_TAKE(s, hdi_pair, x->strands * most);
-    all.place = HDI_TAKE_ZERO(s, uint32_t, x->strands * (int64_t)n);
-    for (v = 0; v < x->strands && s->e->status >= 0; v++) {
-        x->ring[v] = all;
-        all.at += most;
-        all.list += most;
-        all.place += n;
+    if (s->e->status < 0) return s->e->status;
+    if (!mesh->copies) {
+        hdi_parallel_ranges(s->ctx, mesh->m, hdi_block_size(mesh->m), hdi_repeats_task, x);
+        rep->n_repeated_face = (int32_t)hdi_tally_all(mesh, mesh->m).n[HDI_REPEATED_FACE];
+        rep->n_faces_used -= rep->n_repeated_face;
     }
-    /* the stars of points have different faces, of which only edges are asked for */
-    if (s->e->status < 0 || (mesh->copies && mesh->xyz)) return s->e->status;
-    x->counting = 1;
-    repeated = (int32_t)hdi_rows_run(x, NULL, s->ctx).n[HDI_REPEATED_FACE];
-    x->counting = 0;
-    rep->n_repeated_face += repeated;
-    rep->n_faces_used -= repeated;
+    hdi_rows_links(x);
+    x->link = HDI_TAKE(s, uint64_t, hdi_prefix_sum(x->first, n));
+    if (s->e->status < 0 || (hdi_is_poly(mesh) && hdi_mesh_corners(&x->mesh, s) < 0)) return s->e->status;
+    hdi_rows_links(x);
+    memmove(x->first + 1, x->first, (size_t)n * sizeof *x->first);         /* each has moved on to the next */
+    x->first[0] = 0;
+    hdi_parallel_ranges(s->ctx, n, hdi_block_size(n), hdi_links_task, x);
     return HD_OK;
 }
 
-/* What is known of the edges of a mesh in space, and their mean length. */
-static void hdi_rows_report(hdi_rows *x, hdi_tally all, hd_mesh_report *rep, double *h) {
-    int32_t v, k;
-    hdi_fill_own(x->count, x->mesh.n);
-    for (v = 0, rep->n_boundary_loops = 0; v < x->mesh.n; v++) {
-        if (!x->border[v]) continue;
-        rep->n_boundary_loops++;                 /* a set, until it is united with another one */
-        hdi_ring_of(x->ring, &x->mesh, v);
-        for (k = 1; k < x->ring->n; k++)
-            if (x->ring->at[k].faces == 1)
-                rep->n_boundary_loops -= hdi_unite(x->count, v, x->ring->at[k].to);
+/* Counts the entries of rows, without the vertices held. */
+static void hdi_rows_count(const hdi_rows *x, const char *held) {
+    int64_t p = 0;
+    int32_t v;
+    hdi_fill_i32(x->count, x->mesh.n, -1);
+    for (v = 0; v < x->mesh.n; v++) {
+        const int64_t begin = p, end = x->first[v + 1];
+        int32_t later = 0;
+        while (p < end) {
+            const int32_t w = (int32_t)(x->link[p] >> 32), counts = w != v && !(held && (held[v] || held[w]));
+            while (++p < end && (int32_t)(x->link[p] >> 32) == w) {}
+            later += counts;
+            x->count[w] = hdi_high32(x->count[w], 1) + counts;
+        }
+        x->later[v] = later;
+        if (begin < end) x->count[v] = hdi_high32(x->count[v], 1) + later;
     }
-    rep->n_edges = all.n[HDI_EDGES];
-    rep->n_boundary_edges = all.n[HDI_BOUNDARY];
-    rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
-    rep->n_misoriented_edges = all.n[HDI_MISORIENTED];
-    *h = all.length / (double)all.n[HDI_EDGES];
 }
 
 /* Marks the vertices of the border where that is asked for. */
@@ -5988,7 +5985,17 @@ static void hdi_rows_border(hdi_rows *x, const hd_laplacian *lap) {
     int32_t v;
     if (!mark || (!x->mesh.xyz && !x->mesh.len)) return;
     (void)hdi_rows_run(x, NULL, lap->context);
-    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v];
+    for (v = 0; v < lap->n; v++) mark[v] |= x->border[v] > 0;
+}
+
+/* What is known of the edges of a mesh in space, and their mean length. */
+static void hdi_rows_report(hdi_tally all, hd_mesh_report *rep, double *h) {
+    rep->n_boundary_loops = (int32_t)all.n[HDI_LOOPS];
+    rep->n_edges = all.n[HDI_EDGES];
+    rep->n_boundary_edges = all.n[HDI_BOUNDARY];
+    rep->n_nonmanifold_edges = all.n[HDI_NONMANIFOLD];
+    rep->n_misoriented_edges = all.n[HDI_MISORIENTED];
+    *h = all.length / (double)all.n[HDI_EDGES];
 }
 
 /* Values of the rows and what is known of them. area and h of intrinsic triangles are known. */
@@ -5998,20 +6005,22 @@ static void hdi_lap_values(hd_laplacian *lap, hdi_rows *x) {
     lap->conserves = 1;
     lap->mesh.n_negative_weights = all.n[HDI_NEGATIVE];
     if (!x->mesh.xyz && !x->mesh.len) return;
-    hdi_rows_report(x, all, &lap->mesh, &lap->h);
+    hdi_rows_report(all, &lap->mesh, &lap->h);
     for (f = 0, lap->area = 0; f < x->mesh.m; f++) lap->area += hdi_max(x->mesh.area[f], 0);
 }
 
 /* ---- meshes that move ---- */
 
 /* Has each vertex that had a face still one with an area? */
-static hd_status hdi_moving_masses(const hdi_mesh *mesh, hd_error *e) {
-    int64_t p = 0;
-    int32_t v;
+static hd_status hdi_moving_masses(const hdi_rows *x, hd_error *e) {
+    const hdi_mesh *mesh = &x->mesh;
+    int64_t c = 0, end;
+    int32_t f, v;
+    hdi_fill_i32(x->work, mesh->n, 0);
+    for (f = 0; f < mesh->m; f++)
+        for (end = c + hdi_face_size(mesh, f); c < end; c++) x->work[mesh->tri[c]] |= mesh->area[f] > 0;
     for (v = 0; v < mesh->n; v++) {
-        int alive = mesh->at[v] == mesh->at[v + 1];
-        for (; p < mesh->at[v + 1]; p++) alive |= mesh->area[hdi_corner_face(mesh, mesh->corner[p])] > 0;
-        if (!alive)
+        if (x->count[v] > 0 && !x->work[v])
             return hdi_fail_face(e, HD_ERR_EMPTY, "update: no face at the vertex has an area any more", -1,
                                  v, 0);
     }
@@ -6025,7 +6034,7 @@ static hd_status hdi_lap_update(hd_laplacian *lap, const double *xyz, hd_error *
     if (hdi_points_check(xyz, lap->n, e) < 0) return e->status;
     x->mesh.xyz = xyz;
     memset(&rep, 0, sizeof rep);
-    if (hdi_faces_measure(&x->mesh, &rep, lap->context, e) < 0 || hdi_moving_masses(&x->mesh, e) < 0)
+    if (hdi_faces_measure(&x->mesh, &rep, lap->context, e) < 0 || hdi_moving_masses(x, e) < 0)
         return e->status;
     hdi_lap_values(lap, x);
     to->n_faces_used = rep.n_faces_used;
@@ -6076,11 +6085,11 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
     if (in->updatable) lap->moving = x;
     hdi_rows_border(x, lap);
+    hdi_rows_count(x, hdi_lap_marks(lap));
     if (hdi_lap_rows(lap, x->count, in->full && lap->kind == HD_LAPLACIAN_FEM, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
         return s->e->status;
     hdi_lap_values(lap, x);
-    if (lap->n_held > 0) hdi_lap_pack(lap);
     /* The element matrix area/12 (1 1' + I) is at least 1/2 of its diagonal, area/12 I; that of a triangle
      * with corners v, v, w at least 1 - sqrt(1/3), and that of corners v, v, v is its diagonal. */
     lap->b_ratio = !lap->B ? 1 : lap->mesh.n_self_edges ? 1 - sqrt(1.0 / 3) : 0.5;
@@ -6089,18 +6098,13 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
     return hdi_progress(lap->context, "assemble", 0.8, s->e);
 }
 
-/* Reports the edges of a mesh, whose mean length is put into h. */
-static hd_status hdi_lap_edges(hd_laplacian *lap, const hdi_mesh *mesh, double *h, hdi_scope *s) {
-    hdi_rows x;
-    if (hdi_rows_begin(&x, mesh, &lap->mesh, s) < 0) return s->e->status;
-    hdi_rows_report(&x, hdi_rows_run(&x, NULL, lap->context), &lap->mesh, h);
-    hdi_rows_border(&x, lap);
-    return HD_OK;
-}
-
 /* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
-    if (hdi_lap_edges(lap, &z->mesh, &z->unit, s) < 0) return s->e->status;
+    hdi_rows x;
+    if (hdi_mesh_corners(&z->mesh, s) < 0 || hdi_rows_begin(&x, &z->mesh, &lap->mesh, s) < 0)
+        return s->e->status;
+    hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, &z->unit);
+    hdi_rows_border(&x, lap);
     if (lap->mesh.n_faces_used == 0)
         return hdi_fail(s->e, HD_ERR_EMPTY, in->points ? "the points' neighbourhoods make no triangle"
                                                        : "no vertex has mass");
@@ -6190,12 +6194,6 @@ static void hdi_component_sums(const hd_laplacian *lap, const double *weight, co
     memset(out, 0, (size_t)lap->n_components * sizeof *out);
     for (i = 0; i < lap->n_active; i++)
         if (x[i] != 0) out[lap->component[i]] += weight ? weight[i] * x[i] : x[i];
-}
-
-/* x_i += value[component of i] */
-static void hdi_component_add(const hd_laplacian *lap, const double *value, double *x) {
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) x[i] += value[lap->component[i]];
 }
 
 /* ---- the caller's own matrices ---- */
@@ -12940,7 +12938,7 @@ static double hdi_row_size(const hd_laplacian *lap, int32_t i, double l, double 
     double sum = lap->B ? 0 : b * lap->mass[i] * (x ? fabs(x[i]) : 1);
     int64_t p;
     for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
-        const double m = l * fabs(lap->L.val[p]) + (lap->B ? b * fabs(lap->B[p]) : 0);
+        const double m = l * fabs(lap->L.val[p]) + (b != 0 && lap->B ? b * fabs(lap->B[p]) : 0);
         sum += x ? hdi_min(m, 1e140) * fabs(x[lap->L.col[p]]) : m;
     }
     return sum;
@@ -13864,7 +13862,7 @@ static void hdi_conserve(const hd_laplacian *lap, hdi_lane *lane, double c0) {
     hdi_component_sums(lap, lap->mass, lane->u, sums);
     for (c = 0; c < lap->n_components; c++)
         sums[c] = (c0 * lane->target[c] - sums[c]) / lap->component_mass[c];
-    hdi_component_add(lap, sums, lane->u);
+    for (c = 0; c < lap->n_active; c++) lane->u[c] += sums[lap->component[c]];
 }
 
 /* Bound on what rounding does to the heat of components, which are n sums of masses times values; to that of

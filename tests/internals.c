@@ -1082,37 +1082,46 @@ static void int_pairs_degree(void) {
 
 /* ---- [12] operators ---- */
 
-/* Places in rings are told from older ones by a base that grows: rows stay the same where it begins anew. */
-static void int_ring_base(void) {
+/* Rows of a mesh with vertices held are those of the mesh without them, symmetric to the last bit, again after an
+ * update, and every link is listed once. */
+static void int_links(void) {
     enum { N = 6, FACES = 2 * (N - 1) * (N - 1) };
     double xyz[3 * N * N], *L;
-    int32_t tri[3 * FACES], k, round, m = 0;
+    const int32_t held[4] = {0, 9, 14, N * N - 1};
+    int32_t tri[3 * FACES], k, i, m = 0;
     hd_laplacian_opts o;
-    hd_laplacian *lap = NULL;
+    hd_laplacian *lap = NULL, *all = NULL;
     hd_mesh mesh;
     hd_error e;
+    int64_t p;
     memset(&o, 0, sizeof o);
     o.updatable = 1;
     for (k = 0; k < N * N; k++) {
-        const int32_t i = k / N, j = k % N, corner[6] = {k, k + N, k + N + 1, k, k + N + 1, k + 1};
-        const double p[3] = {i + 0.1 * j, (double)j, 0.3 * sin(i + 2.0 * j)};
-        memcpy(xyz + 3 * k, p, sizeof p);
-        if (i + 1 == N || j + 1 == N) continue;
+        const int32_t r = k / N, c = k % N, corner[6] = {k, k + N, k + N + 1, k, k + N + 1, k + 1};
+        const double at[3] = {r + 0.1 * c, (double)c, 0.3 * sin(r + 2.0 * c)};
+        memcpy(xyz + 3 * k, at, sizeof at);
+        if (r + 1 == N || c + 1 == N) continue;
         memcpy(tri + 3 * m, corner, sizeof corner);
         m += 2;
     }
     mesh = hd_triangles(xyz, N * N, tri, m);
+    CHECK(hd_laplacian_create(&all, &mesh, &o, &e) >= 0);
+    o.held = held;
+    o.n_held = 4;
     CHECK(hd_laplacian_create(&lap, &mesh, &o, &e) >= 0);
+    CHECK(lap->moving->first[N * N] == 3 * m && lap->n_active == N * N - 4);
+    for (i = 0; i < lap->n_active; i++)
+        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1]; p++) {
+            const int64_t q = hdi_csr_find(&lap->L, lap->L.col[p], i);
+            const int64_t a = hdi_csr_find(&all->L, lap->vertex[i], lap->vertex[lap->L.col[p]]);
+            CHECK(q >= 0 && a >= 0 && lap->L.val[p] == lap->L.val[q] && lap->B[p] == lap->B[q]);
+            CHECK(fabs(lap->L.val[p] - all->L.val[a]) <= (lap->L.col[p] == i ? 1e-14 * lap->L.val[p] : 0));
+        }
     L = KIT_NEW(double, lap->L.nnz);
     memcpy(L, lap->L.val, (size_t)lap->L.nnz * sizeof *L);
-    CHECK(lap->moving->strands == 1);
-    for (round = 0; round < 60; round++) {
-        lap->moving->ring->base = UINT32_MAX / 2 - 40;
-        for (k = 0; k < N * N; k++) lap->moving->ring->place[k] = 1 + (uint32_t)((31 * round + 37 * k) % 280);   /* old ones */
-        CHECK(hd_laplacian_update(lap, &mesh, &e) >= 0 && memcmp(L, lap->L.val, (size_t)lap->L.nnz * sizeof *L) == 0);
-        CHECK(lap->moving->ring->base < UINT32_MAX / 4);
-    }
+    CHECK(hd_laplacian_update(lap, &mesh, &e) >= 0 && memcmp(L, lap->L.val, (size_t)lap->L.nnz * sizeof *L) == 0);
     hd_laplacian_free(lap);
+    hd_laplacian_free(all);
 }
 
 /* ---- [25] spectrum ---- */
@@ -1586,7 +1595,7 @@ static void (*const int_tests[])(void) = {
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_core, int_source_bound, int_ring_base, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_core, int_source_bound, int_links, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5,
 };
