@@ -19132,19 +19132,6 @@ static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, doub
     return sqrt(sum);
 }
 
-/* B 1 by vertices in two doubles each. */
-static void hdi_modes_one(const hd_laplacian *lap, double *one) {
-    int32_t i;
-    int64_t p;
-    memset(one, 0, 2 * (size_t)lap->n * sizeof *one);
-    for (i = 0; i < lap->n_active; i++) {
-        hdi_sum sum = {0, 0};
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->B; p++) hdi_sum_add(&sum, lap->B[p]);
-        one[lap->vertex[i]] = lap->B ? sum.high + sum.low : lap->mass[i];
-        if (lap->B) one[lap->n + lap->vertex[i]] = sum.high - one[lap->vertex[i]] + sum.low;
-    }
-}
-
 /* What bounds need of eigenpairs that are there. */
 static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
@@ -19152,6 +19139,7 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     const hd_laplacian *lap = heat->source;
     const uint64_t n = (uint64_t)s->n;
     const int32_t first = s->n_constant;
+    int64_t p;
     int32_t q;
     x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
     if (x->off) x->one = HDI_NEW(heat->ctx, double, 2 * n, e);
@@ -19168,7 +19156,14 @@ static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
     }
     x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
     x->low = hdi_max(0, x->low - x->off_norm);
-    hdi_modes_one(lap, x->one);
+    memset(x->one, 0, 2 * (size_t)n * sizeof *x->one);
+    for (q = 0; q < lap->n_active; q++) {        /* B 1 in two doubles each */
+        double *one = x->one + lap->vertex[q];
+        hdi_sum sum = {0, 0};
+        for (p = lap->L.row_ptr[q]; p < lap->L.row_ptr[q + 1] && lap->B; p++) hdi_sum_add(&sum, lap->B[p]);
+        *one = lap->B ? sum.high + sum.low : lap->mass[q];
+        if (lap->B) one[lap->n] = sum.high - *one + sum.low;
+    }
     return HD_OK;
 }
 
@@ -21604,22 +21599,6 @@ static double *hdi_metric_sum(const hdi_metric *x, int32_t i, int32_t q, int g) 
     return x->rows.sum + ((int64_t)i * x->rows.n + row) * x->h->lap->n_active;
 }
 
-/* The column of a source where only means are left. */
-static void hdi_metric_means(const hdi_metric *x, const hdi_terms *source, double *u) {
-    const hd_laplacian *lap = x->h->lap;
-    double *share = x->work;
-    int32_t i, q;
-    memset(share, 0, (size_t)lap->n_components * sizeof *share);
-    for (q = 0; q < source->n; q++) {
-        const int32_t row = lap->row[hdi_terms_at(source, q)];
-        if (row < 0) continue;
-        share[lap->component[row]] += hdi_terms_weight(source, q) *
-            hdi_by_mass(1 / lap->component_mass[lap->component[row]], lap->mass[row], x->f.mass / 2);
-    }
-    for (i = 0; i < lap->n_active; i++)
-        u[i] = hdi_by_mass(share[lap->component[i]], lap->mass[i], x->f.mass / 2);
-}
-
 /* Makes a sum of K_t e_s, or of k_t, one of f or, with a0 = 0, of the bound g. */
 static void hdi_metric_finish(const hdi_metric *x, const hdi_terms *source, double a0, double *u) {
     const hd_laplacian *lap = x->h->lap;
@@ -21637,10 +21616,18 @@ static void hdi_metric_finish(const hdi_metric *x, const hdi_terms *source, doub
 /* The columns of one source after the other from L grounded, or of means. */
 static hd_status hdi_metric_solve_plain(const hdi_metric *x, const hdi_terms *source, int32_t k) {
     const hd_heat *heat = x->h->heat;
-    int32_t i;
+    const hd_laplacian *lap = x->h->lap;
+    double *share = x->work;                     /* means: of each component */
+    int32_t i, q, r;
     for (i = 0; i < k; i++) {
         double *u = hdi_metric_sum(x, i, 0, 0);
-        if (x->equal) hdi_metric_means(x, source + i, u);
+        if (x->equal) memset(share, 0, (size_t)lap->n_components * sizeof *share);
+        for (q = 0; q < source[i].n && x->equal; q++)
+            if ((r = lap->row[hdi_terms_at(source + i, q)]) >= 0)
+                share[lap->component[r]] += hdi_terms_weight(source + i, q) *
+                    hdi_by_mass(1 / lap->component_mass[lap->component[r]], lap->mass[r], x->f.mass / 2);
+        for (r = 0; r < lap->n_active && x->equal; r++)
+            u[r] = hdi_by_mass(share[lap->component[r]], lap->mass[r], x->f.mass / 2);
         if (x->equal) continue;
         if (hdi_progress(heat->ctx, "solve", (double)i / k, x->h->e) < 0) break;
         x->off[i].by_b = HUGE_VAL;
@@ -22049,30 +22036,16 @@ static double hdi_vertex_norm(const hd_laplacian *lap, const double *u, const do
 /* Most doubles of columns that are held at the same time: half a GiB. */
 #define HDI_PAIRS_DOUBLES (INT64_C(1) << 26)
 
-/* Distances |K_t B^-1 (e_i - e_j)|_B from the columns, whose errors are the only ones. The parts of the bound
- * are in the ratio of those of the columns. rep: of these. */
-static void hdi_pairs_note(const hdi_pairs *to, const hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
-    const hd_laplacian *lap = to->of.task.h->heat->source;
-    const size_t n = (size_t)lap->n;
-    double *d = to->d + to->n * to->of.task.h->now;
-    int64_t q;
-    for (q = x->begin; q < x->end; q++) {
-        const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
-        d[q] = 0;
-        if (i == j) continue;
-        d[q] = hdi_vertex_norm(lap, x->U + n * (size_t)i, x->U + n * (size_t)j, x->work);
-        rep->n_lost += d[q] < 10 * (x->off[i] + x->off[j]);
-        hdi_ledger_note(all, d[q], hdi_parts_share(rep, x->off[i] + x->off[j]));
-    }
-}
-
-/* Some pairs at the time under way from columns. */
+/* Some pairs at the time under way from columns, |K_t B^-1 (e_i - e_j)|_B, whose errors are the only ones.
+ * Parts of the bound are in the ratio of those of the columns. rep: of these. */
 static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_report *rep, hdi_ledger *all) {
     hdi_heat_call *h = to->of.task.h;
     const hd_laplacian *lap = h->heat->source;
     const uint64_t n = (uint64_t)lap->n;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     hdi_terms *terms = HDI_TAKE(&s, hdi_terms, x->n_vertex);
+    double *d = to->d + to->n * h->now;
+    int64_t q;
     int32_t v;
     x->work = HDI_TAKE(&s, double, 2 * n + 1);
     x->U = HDI_TAKE(&s, double, n * (uint64_t)x->n_vertex);
@@ -22087,7 +22060,14 @@ static hd_status hdi_pairs_some(const hdi_pairs *to, hdi_pairs_part *x, hd_repor
         /* that of a vertex without a row is exact */
         x->off[v] = 4 * DBL_EPSILON * size + (lap->row[terms[v].one] < 0 ? 0 : off);
     }
-    if (h->e->status >= 0) hdi_pairs_note(to, x, rep, all);
+    for (q = x->begin; q < x->end && h->e->status >= 0; q++) {
+        const int32_t i = x->place[to->i[q]], j = x->place[to->j[q]];
+        d[q] = 0;
+        if (i == j) continue;
+        d[q] = hdi_vertex_norm(lap, x->U + n * (uint64_t)i, x->U + n * (uint64_t)j, x->work);
+        rep->n_lost += d[q] < 10 * (x->off[i] + x->off[j]);
+        hdi_ledger_note(all, d[q], hdi_parts_share(rep, x->off[i] + x->off[j]));
+    }
     return hdi_scope_end(&s);
 }
 
