@@ -792,7 +792,7 @@ static void loc_filter_patches(const hd_laplacian *lap, const char *spec, double
     for (q = 0; q < n; q++)
         for (i = q; i > 0 && tight[i] < tight[i - 1]; i--) up = tight[i], tight[i] = tight[i - 1], tight[i - 1] = up;
     for (q = 0; q < n && tight[q] == 0;) q++;
-    CHECK_MSG(n - q >= n / 3 && tight[(q + n) / 2] < 1e4, "%s: %d errors seen, a bound is %g times its error", spec, (int)(n - q),
+    CHECK_MSG(n - q >= n / 3 && tight[(q + n - 1) / 2] < 1e4, "%s: %d errors seen, a bound is %g times its error", spec, (int)(n - q),
               q < n ? tight[(q + n) / 2] : 0);
     kit_release(mark);
 }
