@@ -64,9 +64,9 @@ static hd_status est_run(hd_heat *heat, const hd_laplacian *lap, const est_case 
             st = hd_heat_diagonal(heat, HD_KERNEL_SYMMETRIC, c->n_times, t, U, 0, Z, NULL, rep, NULL);
             for (i = 0; st < 0 && i < c->n_times; i++) CHECK(Z[i] == 77);
             return st;
-        default:
-            for (i = 0; hdi_distance_rows[i].query != c->query;) i++;
-            return hd_heat_distance(heat, hdi_distance_rows[i].kind, c->n_times, t, VERTICES(c->k, source), U, 0, rep, NULL);
+        default:                                 /* queries of distances are in the order of their kinds */
+            return hd_heat_distance(heat, (hd_distance_kind)(c->query - HD_QUERY_DISTANCE), c->n_times, t, VERTICES(c->k, source), U,
+                                    0, rep, NULL);
     }
 }
 

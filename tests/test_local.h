@@ -793,7 +793,7 @@ static void loc_filter_patches(const hd_laplacian *lap, const char *spec, double
         for (i = q; i > 0 && tight[i] < tight[i - 1]; i--) up = tight[i], tight[i] = tight[i - 1], tight[i - 1] = up;
     for (q = 0; q < n && tight[q] == 0;) q++;
     CHECK_MSG(n - q >= n / 3 && tight[(q + n - 1) / 2] < 1e4, "%s: %d errors seen, a bound is %g times its error", spec, (int)(n - q),
-              q < n ? tight[(q + n) / 2] : 0);
+              q < n ? tight[(q + n - 1) / 2] : 0);
     kit_release(mark);
 }
 
@@ -901,7 +901,7 @@ static void loc_filter_truth(double beside) {
     CHECK(hd_rational_fit(set, 1, f, lap->lambda_max, NULL, NULL) >= 0 && hd_rational_fit(set + 1, 1, f + 1, lap->lambda_max, NULL, NULL) >= 0);
     for (q = 0; q < 2; q++) {
         hd_heat *heat = filt_plan(lap, set + q, "method=local");
-        hd_context *ctx = heat->ctx;
+        hd_context *ctx = &trial_serial;
         hd_status status = HD_ERR_MEMORY_LIMIT;
         memset(w, 0, N * sizeof *w);
         for (k = 0; k < N; k++) {
