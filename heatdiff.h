@@ -17753,7 +17753,7 @@ static hdi_column_parts hdi_column_off(const hd_laplacian *lap, const hdi_lane *
 
 /* A new ledger for a lane's answer by the method. The lane says how its rounding is known. */
 static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h, const hdi_lane *lane) {
-    const int poles = h->solver != HD_SOLVER_LANCZOS;   /* of krylov that is the solver, too */
+    const int poles = h->solver != HD_SOLVER_LANCZOS;   /* krylov has that solver, too */
     const int still = h->t == 0 || h->equal;
     const hd_rational *set = h->method == HD_METHOD_DIRECT ? &h->heat->elim.set : &h->heat->fam.set;
     const int itself = set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0;   /* bounds are for c itself */
@@ -20713,13 +20713,13 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
-/* Smaller pieces have to take less by this. */
+/* Smaller pieces are taken where they need less than this part of the work. */
 #define HDI_PATCH_GAIN 0.9
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 90
-/* Of a piece that did not fit they were so many times as many. */
+/* Where a piece did not fit after all, they are taken as so many times as many from then on. */
 #define HDI_PATCH_MORE 1.05
-/* Of those that would fit, for the others of a region need more. */
+/* The part of the rows that would fit that pieces have: others of the region may need more. */
 #define HDI_PATCH_SURE 0.97
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
@@ -21134,8 +21134,8 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* How many rows a piece has in a region that is a few pieces large: the first of them has to fit, or of twice
- * as many. */
+/* How many rows a piece has in a region that is a few pieces large. The first piece has to fit: if it does
+ * not, there are more of them, up to twice as many. */
 static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
     const int32_t few = hdi_patch_pieces(x, end - begin);
     int32_t pieces = few, last = 0, middle, k;
@@ -21772,8 +21772,8 @@ static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
-/* The distance between two ends, which is noted with its errors. f_ab, g_ab: of the column of a, whose errors
- * are off. All that a kind makes of f stands here. */
+/* The distance between two ends; it and its errors are noted. f_ab, g_ab: of the column of a, whose errors are
+ * off. What a kind of distance makes of f stands here. */
 static double hdi_metric_between(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                  double f_ab, const double *g_ab, const hdi_column_parts *off,
                                  hd_report *rep, hdi_ledger *ledger) {
