@@ -21772,8 +21772,8 @@ static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
-/* The distance between two ends; it and its errors are noted. f_ab, g_ab: of the column of a, whose errors are
- * off. What a kind of distance makes of f stands here. */
+/* The distance between two ends; it and its errors are noted. f_ab, g_ab: of the column of a, whose errors
+ * are off. What a kind of distance makes of f stands here. */
 static double hdi_metric_between(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                  double f_ab, const double *g_ab, const hdi_column_parts *off,
                                  hd_report *rep, hdi_ledger *ledger) {
