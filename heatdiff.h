@@ -472,7 +472,8 @@ typedef enum hd_solver {
     HD_SOLVER_AUTO = 0,         /* Lanczos for small t if it costs less, else cocg */
     HD_SOLVER_COCG,             /* conjugate orthogonal CG (van der Vorst, Melissen 1990); real poles: CG */
     HD_SOLVER_MINRES = 3,       /* CS-MINRES (Choi 2013) */
-    HD_SOLVER_LANCZOS           /* for the exponential, no poles: about 1.1 sqrt(t lambda_max) steps */
+    /* For the exponential, no poles: about 1.1 sqrt(t lambda_max) steps. Derivatives take cocg */
+    HD_SOLVER_LANCZOS
 } hd_solver;
 
 typedef enum hd_precond {
@@ -14186,54 +14187,32 @@ static int hdi_lanczos_eigen(const double *alpha, const double *beta, int32_t st
     return hdi_tridiag_eigen(d, off, v, m, rows);
 }
 
-/* e_m' exp(-s T) e_1 from the ends of T's eigenvectors, or its integral from 0 to s: it has one sign. */
-static double hdi_lanczos_last(const hdi_lanczos *z, double s, int integral) {
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < z->m; i++) {
-        const double x = s * z->d[i], both = z->ends[2 * i] * z->ends[2 * i + 1];
-        if (!integral) sum += both * exp(-hdi_max(0, x));
-        else sum += both * s * (fabs(x) > 1e-8 ? -expm1(-x) / x : 1 - x / 2);
-    }
-    return fabs(sum);
+/* The integral of exp(-s x) over s from 0 to t. */
+static double hdi_exp_integral(double x, double t) {
+    return t * (fabs(t * x) > 1e-8 ? -expm1(-t * x) / (t * x) : 1 - t * x / 2);
 }
-
-/* A bound of it for s in [t/2, t]. But for a factor it is the density of a sum of exponential variables, and
- * its logarithm is concave: below the lines through that at t/4 and t/2, and at t and 2 t. */
-static double hdi_lanczos_peak(const hdi_lanczos *z, double t) {
-    const double half = hdi_lanczos_last(z, t / 2, 0), last = hdi_lanczos_last(z, t, 0);
-    const double rise = hdi_max(1, hdi_quotient(half, hdi_lanczos_last(z, t / 4, 0)));
-    const double fall = hdi_max(1, hdi_quotient(last, hdi_lanczos_last(z, 2 * t, 0)));
-    const double lines = hdi_min(hdi_bound_times(half, rise * rise), hdi_bound_times(last, sqrt(fall)));
-    return hdi_max(lines, hdi_max(half, last));
-}
-
-#define HDI_TWO_OVER_E 0.7357588823428847
 
 /* Bounds the error of m steps from a vector of norm one by
  *   t beta_(m+1) |e_m' phi_1(-t T) e_1|,   phi_1(z) = (e^z - 1)/z.
  * The error is beta int_0^t exp(-(t-s) A) v_(m+1) f(s) ds, with A = B^-1 L and f(s) = e_m' exp(-s T) e_1. The
- * last factor has one sign for all s, and the first one shrinks. With rate it is that of t times the
- * derivative, for which the integral up to t/2 has |A exp(-(t-s) A)| <= 2/(e t), and the rest, by parts,
- * comes to no more than f(t/2) and the variation of f from there on. */
-static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, int rate, double *bound, hd_error *e) {
+ * last factor has one sign for all s, and the first one shrinks. The ends of T's eigenvectors give it. */
+static hd_status hdi_lanczos_bound(hdi_lanczos *z, double t, double *bound, hd_error *e) {
     const int32_t m = z->m;
-    double least = 0, most = 0;
+    double least = 0, most = 0, sum = 0;
     int32_t i;
     if (!hdi_lanczos_eigen(z->alpha, z->beta, 1, m, 2, z->d, z->e, z->ends)) return hdi_lanczos_failed(e);
     for (i = 0; i < m; i++) {
         least = hdi_min(least, z->d[i]);
         most = hdi_max(most, fabs(z->d[i]));
+        sum += z->ends[2 * i] * z->ends[2 * i + 1] * hdi_exp_integral(z->d[i], t);
     }
     if (least < -1e-8 * most - 2 * sqrt((double)m) * z->noise) return hdi_not_semidefinite(e);
-    *bound = z->beta[m] * (!rate ? hdi_lanczos_last(z, t, 1)
-                           : HDI_TWO_OVER_E * hdi_lanczos_last(z, t / 2, 1) +
-                             t * (2 * hdi_lanczos_peak(z, t) - hdi_lanczos_last(z, t, 0)));
+    *bound = z->beta[m] * fabs(sum);
     return HD_OK;
 }
 
-/* y = exp(-t T) e_1, or what else the set stands for, by one of degree 14. It takes O(m) operations a pole,
- * and its error is that of rounding in an eigensolution. */
+/* y = exp(-t T) e_1 by a set of degree 14. It takes O(m) operations a pole, and its error is that of rounding
+ * in an eigensolution. */
 static void hdi_lanczos_coefficients(hdi_lanczos *z, double t, const hd_rational *set) {
     const int32_t m = z->m;
     hd_c64 *d = z->work, *g = z->work + m;
@@ -14263,7 +14242,6 @@ typedef struct hdi_lanczos_task {
     double t, tol;
     double drift;                        /* change of a constant in unit time */
     int32_t max_iterations;
-    int rate;                            /* t times the derivative is asked for */
 } hdi_lanczos_task;
 
 /* A start: v of B norm one, c = B v. */
@@ -14325,37 +14303,19 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lane *lane, 
     return HD_OK;
 }
 
-/* |exp(-s T) e_1|, or with product |T exp(-s T) e_1|. */
-static double hdi_lanczos_size(const hdi_lanczos *z, double s, int product) {
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < z->m; i++) {
-        const double part = z->ends[2 * i] * (product ? z->d[i] : 1);
-        sum += part * part * exp(-2 * s * hdi_max(0, z->d[i]));
-    }
-    return sqrt(sum);
-}
-
 /* A bound on what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
  * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
- * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
- * with s, so that left Riemann sums are above it. With rate as in the bound above. Rounding of the answer's
- * own sum comes on top. */
-static double hdi_lanczos_rounding(const hdi_lanczos *z, double t, int rate) {
+ * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, and by Cauchy
+ * and Schwarz that is at most the root of t times the integral of its square. Rounding of the answer's own
+ * sum comes on top. */
+static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
     const int32_t m = z->m;
-    const double end = rate ? t / 2 : t;
-    double integral = 0, from = 0, to;
-    int32_t k;
-    for (k = 24; k >= 0; k--) {
-        to = ldexp(end, -2 * k);
-        integral += hdi_lanczos_size(z, from, 0) * (to - from);
-        from = to;
-    }
-    if (rate)
-        integral = HDI_TWO_OVER_E * integral + t * hdi_lanczos_size(z, end, 0) +
-                   t * (end * hdi_lanczos_size(z, end, 1));
-    return sqrt((double)m) *
-           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
+    double square = 0;
+    int32_t i;
+    for (i = 0; i < m; i++)
+        square += z->ends[2 * i] * z->ends[2 * i] * hdi_exp_integral(2 * hdi_max(0, z->d[i]), t);
+    return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * sqrt(t * square) +
+                              m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
 }
 
 /* Steps to the next look at the bound for a start of norm one, which falls like exp(-m^2): half of those that
@@ -14376,18 +14336,17 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     double bound = 0, best = DBL_MAX;
     int32_t look = 1, best_m = 0;
     hd_rational set;
-    if (hdi_rational_get(&set, task->rate ? HD_POLES_KERNEL : HD_POLES_UNIFORM, 14, e) < 0) return e->status;
-    if (task->rate) hdi_rational_rate(&set);
+    if (hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, e) < 0) return e->status;
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
         if (hdi_lanczos_step(task, lane, e) < 0) return e->status;
         if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
-        if (hdi_lanczos_bound(z, t, task->rate, &bound, e) < 0) return e->status;
+        if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
         lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
         lane->off.solver = f0_norm * bound;
         /* the coefficients are by poles */
-        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t, task->rate) + set.max_error);
+        lane->off.rounding = f0_norm * (hdi_lanczos_rounding(z, t) + set.max_error);
         if (lane->off.solver <= tol * lane->u_norm || z->beta[z->m] == 0) return HD_OK;
         if (bound < best / 2) {
             best = bound;
@@ -17722,7 +17681,7 @@ static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     const hd_heat *heat = h->heat;
     hdi_lane *lane = h->heat->lane + index;
     const hdi_lanczos_task task = {heat->fam.lap, heat->fam.weight, heat->fam.noise_l, h->t, heat->opts.tol,
-                                   heat->drift, heat->opts.max_iterations, h->rate};
+                                   heat->drift, heat->opts.max_iterations};
     const double share = 1.0 / h->ask.k;
     const hdi_watch watch = {worker == 0 ? heat->ctx : NULL, &h->stop, share * (double)(h->batch + index),
                              share, "solve"};
@@ -17898,12 +17857,13 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
-/* Lanczos where the choice is free, B needs no solve, and by the model it takes less time for one item. */
+/* Lanczos where the choice is free, B needs no solve, and by the model it takes less time for one item.
+ * Derivatives go by poles. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
     hd_cost lanczos = {0, 0, 0, 0, 0, 0}, cocg = lanczos;
-    if (o->solver) return o->solver;
+    if (o->solver && !(h->rate && o->solver == HD_SOLVER_LANCZOS)) return o->solver;
     if (h->rate || heat->poles_asked || o->precond != HD_PRECOND_MILDL || heat->source->B)
         return HD_SOLVER_COCG;
     hdi_steps_cost(heat, HD_SOLVER_LANCZOS, t, 0, 1, &lanczos);

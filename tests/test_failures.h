@@ -270,9 +270,9 @@ static void fail_query(const char *method, int way, int q) {
     for (many = 0; many < (brief ? 1 : 2); many++) {
         const char *const times = many && !strstr(words, "commute") && !strstr(words, "biharmonic") ? "n_times=3" : "";
         const int turn = q + many * FAIL_QUERIES + way;
-        /* under a limit preconditioners are made in turns, auto takes iterations, times do without shared poles; where heat
-         * fades, eigenpairs may serve if the plan has them */
-        const int depends = way <= 2 || fail_asked[q].depends || turn % 3 == 2;
+        /* under a limit preconditioners are made in turns, also for derivatives of plans with Lanczos; auto takes iterations, times do
+         * without shared poles; where heat fades, eigenpairs may serve if the plan has them */
+        const int depends = way <= 2 || fail_asked[q].depends || turn % 3 == 2 || (way == 3 && strstr(words, "derivative"));
         c.goes_on = depends ? FAIL_DEPENDS : way == 4 ? FAIL_GOES_ON : FAIL_TELLS;
         snprintf(text, sizeof text, "%s %s %s %s", fail_laplacians[turn % 3], method, times, words);
         fail_run(&c);
