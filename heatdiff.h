@@ -12839,7 +12839,8 @@ static hdi_parts hdi_parts_least(hdi_parts a, hdi_parts b) {
     return a;
 }
 
-/* The account of a query's errors, which becomes part of its report: absolute, over all values noted. */
+/* The account of a query's errors, which becomes part of its report: absolute, over all values noted. What is
+ * not noted counts as exact. */
 typedef struct hdi_ledger {
     hdi_parts off;               /* the largest of each part */
     hdi_parts evidence;          /* of each part, as hd_evidence; hdi_ledger_begin sets it */
@@ -14915,13 +14916,16 @@ static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times,
 /* ---- kinds of distances ---- */
 
 /* All that is known of a kind. d^2 is made of a kernel at a time, or of sums over eigenpairs of
- * 1/lambda^power. All who answer for distances read these rows; a kind without a row is unknown. */
+ * 1/lambda^power; how is said at hdi_metric_square. All who answer for distances read these rows; a kind
+ * without a row is unknown, and hd_spectrum_distance takes one with a row as a sum of squares. */
 typedef struct hdi_distance_row {
     hd_distance_kind kind;
     hd_query query;              /* its name for hd_heat_estimate */
     int32_t time;                /* the kernel is of t times this; 0: L grounded serves, without a time */
     int32_t power;               /* without a time */
     int32_t mass;                /* how often B is a factor: 2 of B k B */
+    int32_t norm;                /* 1: at a time d is a norm, of columns or of sums over eigenpairs */
+    int32_t apart;               /* 1: infinite between components */
     int32_t many;                /* 1: from many sources the bound by poles soon calls for eigenpairs */
     /* The default begins with the highest degree: that of 9 would do only up to sqrt(t) = 0.8 h, as seen on
      * meshes of 1K to 50K vertices. */
@@ -14930,10 +14934,10 @@ typedef struct hdi_distance_row {
 } hdi_distance_row;
 
 static const hdi_distance_row hdi_distance_rows[] = {
-    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 1, 0},
-    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 0, 0, 3.5e-7},
-    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 0, 0},
-    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 0, 0}
+    {HD_DISTANCE_CLASSICAL, HD_QUERY_DISTANCE, 2, 0, 0, 1, 0, 1, 1, 0},
+    {HD_DISTANCE_WEIGHTED, HD_QUERY_DISTANCE_WEIGHTED, 2, 0, 2, 1, 0, 0, 0, 3.5e-7},
+    {HD_DISTANCE_COMMUTE, HD_QUERY_DISTANCE_COMMUTE, 0, 1, 0, 0, 1, 0, 0, 0},
+    {HD_DISTANCE_BIHARMONIC, HD_QUERY_DISTANCE_BIHARMONIC, 0, 2, 0, 0, 1, 0, 0, 0}
 };
 enum { HDI_DISTANCES = sizeof hdi_distance_rows / sizeof *hdi_distance_rows };
 
@@ -21283,6 +21287,11 @@ static double hdi_distance_times(const hd_heat *heat, const hdi_distance_row *ki
     return hdi_heat_filtered(heat) ? 1 : kind->time;
 }
 
+/* Are distances of pairs norms of differences of columns? */
+static int hdi_pairs_norms(const hd_heat *heat, const hdi_distance_row *kind) {
+    return kind->norm && !hdi_heat_filtered(heat);
+}
+
 /* Distances of one kind, at one time or at several that share their poles: d^2 = f_ss - 2 f_sv + f_vv with
  * f of k_t, or of B k_t B, in elimination order and in the unit of the scaled pair. The rational error of
  * f is at most that of the set for forms with the diagonals g and spread. Rounding of a column is at most
@@ -21303,7 +21312,7 @@ typedef struct hdi_metric {
     double *work;                /* [n], or of grounded solves */
     hd_report *local;            /* f is by patches, with errors f.g, columns by balls; NULL: not so */
     struct hdi_mode_sum *modes;  /* eigenpairs answer, and nothing above is there; NULL: not so */
-    const int32_t *column;       /* [in.count] which time of the query each function is for */
+    const int32_t *column;       /* [in.count] which of h->ask.t each function is for; set before answers */
     hd_report *one;              /* by times; NULL: all is for the report of the call */
 } hdi_metric;
 
@@ -21658,8 +21667,9 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
 }
 
 /* f, g and spread of an end of a distance, and what rounding of its diagonal is relative to; off is a bound
- * on the error of f besides. Of a vertex they are those of the diagonals. Of several f and g are taken from
- * their columns u and g; spread is a bound, and so is g where its column is NULL. */
+ * on the error of f besides. Of a vertex they are those of the diagonals: by patches g is infinite and off
+ * says all, of means all but f are 0. Of several f and g are taken from their columns u and g; spread is a
+ * bound, and so is g where its column is NULL. */
 typedef struct hdi_metric_end { double f, g, spread, size, off; } hdi_metric_end;
 
 /* That of row r; negative: there is none. */
@@ -21732,20 +21742,23 @@ static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
-/* The distance between two ends; it and its errors are noted. f_ab, g_ab: of the column of a, whose errors
- * are off. What a kind of distance makes of f stands here. */
-static double hdi_metric_between(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
-                                 double f_ab, const double *g_ab, const hdi_column_parts *off,
-                                 hd_report *rep, hdi_ledger *ledger) {
-    const double rational = hdi_metric_rational(x, a, b, g_ab), rounding = hdi_metric_rounding(x, a, b, off);
-    const double d2 = a->f - (2 * f_ab - b->f), delta = rational + rounding, d = d2 > 0 ? sqrt(d2) : 0;
+/* What a kind makes of f: d^2 between two ends, over the square of x->root; off gets bounds on its errors.
+ * f_ab, g_ab: of the column of a, whose errors are column. */
+static double hdi_metric_square(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
+                                double f_ab, const double *g_ab, const hdi_column_parts *column,
+                                hdi_parts *off) {
+    off->rational = hdi_metric_rational(x, a, b, g_ab);
+    off->rounding = hdi_metric_rounding(x, a, b, column);
+    return a->f - (2 * f_ab - b->f);
+}
+
+/* The distance of this square; it and its errors are noted. */
+static double hdi_metric_root(const hdi_metric *x, double d2, hdi_parts off, hd_report *rep,
+                              hdi_ledger *ledger) {
+    const double delta = hdi_parts_sum(&off), d = d2 > 0 ? sqrt(d2) : 0;
     const double error = x->root * (d2 > delta ? delta / d : sqrt(2 * delta));
-    hdi_parts part = {0, 0, 0, 0};
-    if (delta > 0) {
-        part.rational = hdi_finite(delta) ? error * (rational / delta) : rational;
-        part.rounding = hdi_finite(delta) ? error * (rounding / delta) : rounding;
-    }
-    if (x->local) part = hdi_parts_share(x->local, error);
+    const hdi_parts part = x->local ? hdi_parts_share(x->local, error)
+                         : delta > 0 && hdi_finite(delta) ? hdi_parts_scale(error / delta, off) : off;
     rep->n_lost += delta > 0 && d2 < 10 * delta;
     hdi_ledger_note(ledger, x->root * d, part);
     return x->root * d;
@@ -21765,12 +21778,15 @@ static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int3
     for (v = begin; v < end; v++) {
         const int32_t r = lap->row[v];
         const hdi_metric_end to = hdi_metric_row(x, r);
-        const int apart = x->kind->power > 0 && (r < 0 || own < 0 || lap->component[r] != own);
+        const int apart = x->kind->apart && (r < 0 || own < 0 || lap->component[r] != own);
+        hdi_parts part = {0, 0, 0, 0};
+        double d2;
         out[v] = apart ? HUGE_VAL : 0;
         if (!s->weight && v == s->one) out[v] = 0;
-        else if (!apart)
-            out[v] = hdi_metric_between(x, &from, &to, r < 0 ? 0 : u[r], g && r >= 0 ? g + r : NULL,
-                                        s->weight || own >= 0 ? off : NULL, rep, ledger);
+        if (apart || (!s->weight && v == s->one)) continue;
+        d2 = hdi_metric_square(x, &from, &to, r < 0 ? 0 : u[r], g && r >= 0 ? g + r : NULL,
+                               s->weight || own >= 0 ? off : NULL, &part);
+        out[v] = hdi_metric_root(x, d2, part, rep, ledger);
     }
 }
 
@@ -21873,7 +21889,7 @@ static void hdi_distance_task(hdi_distance_query *to, hdi_heat_call *h, int32_t 
     to->group = hdi_low32(k, HDI_LANES);
     to->highest = kind->highest;
     to->local = NULL;
-    if (!HDI_HAS_MODES || !(kind->time > 0) || !hdi_modes_allowed(h->heat)) return;
+    if (!HDI_HAS_MODES || !kind->norm || !hdi_modes_allowed(h->heat)) return;
     to->task.serves = (int32_t)hdi_min(hdi_max(HDI_MODES_FIRST, many), HDI_MODES_MOST / 2);
     to->task.depth = hdi_max(0, log(2 * span / hdi_modes_tol(h->heat)));   /* 0: tol is all there is */
 }
@@ -22082,7 +22098,7 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
 static HDI_COLD hd_status hdi_pairs_by_poles(hdi_task *task) {
     const hdi_pairs *to = (const hdi_pairs *)task;
     hdi_heat_call *h = task->h;
-    if (!(to->of.kind->time > 0) || hdi_heat_filtered(h->heat) || !hdi_pairs_columns(to))
+    if (!hdi_pairs_norms(h->heat, to->of.kind) || !hdi_pairs_columns(to))
         return hdi_distance_by_poles(task);
     if (h->e->status >= 0 && h->rep->method == HD_METHOD_DIRECT)
         task->excess = h->rep->error_bound / HDI_MODES_HELP;
@@ -22140,7 +22156,7 @@ static hd_status hdi_distance_begin(hdi_heat_call *h, hd_heat *heat, const hdi_d
     if (kind->time == 0 && (n_times > 1 || n_times < 0))
         return hdi_fail_row(h->e, HD_ERR_ARGUMENT, "distance: n_times is 0 or 1 for commute and biharmonic",
                             -1, -1, n_times);
-    return kind->time > 0 && (hdi_patches_can(heat) || (pairs && !hdi_heat_filtered(heat))) ? HD_OK
+    return kind->time > 0 && (hdi_patches_can(heat) || (pairs && hdi_pairs_norms(heat, kind))) ? HD_OK
            : hdi_direct_only(h);
 }
 
@@ -22184,8 +22200,8 @@ HEATDIFF_API hd_status hd_heat_distance_pairs(hd_heat *heat, hd_distance_kind ki
     hdi_distance_task(&to.of, &h, 1);
     to.of.answer = hdi_pairs_answer;
     to.of.task.poles = hdi_pairs_by_poles;
-    if (hdi_heat_filtered(heat)) (void)hdi_distance_answer(&to.of);
-    else (void)hdi_heat_sparing(&h, &to.of.task);
+    if (hdi_pairs_norms(heat, to.of.kind)) (void)hdi_heat_sparing(&h, &to.of.task);
+    else (void)hdi_distance_answer(&to.of);
     return hdi_heat_end(&h);
 }
 

@@ -653,8 +653,7 @@ static void diag_samples(void) {
         double *far = KIT_NEW(double, lap->n * lap->n), off;
         int32_t one = -9;
         kind = q % 4;
-        if (kind < 2) trial_filter_for(w, 2 * t, 0);
-        else truth_filter_fill(&w->s->f, w->T, kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
+        trial_distance_for(w, kind, 2 * t, 0);
         for (i = 0; i < lap->n; i++)
             for (j = 0; j < lap->n; j++) {
                 const int32_t a = lap->row[i], b = lap->row[j];

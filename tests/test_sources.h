@@ -357,8 +357,7 @@ static void src_want_distances(trial_work *w, hd_distance_kind kind, double t, c
     quad *share = (quad *)kit_keep(truth_room(lap->n, sizeof(quad)), free), sum = 0;
     int32_t v, p, own = -2;
     int apart = 0;
-    if (kind < HD_DISTANCE_COMMUTE) trial_filter_for(w, 2 * t, 0);
-    else truth_filter_fill(&w->s->f, w->T, kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
+    trial_distance_for(w, kind, 2 * t, 0);
     for (v = 0; v < lap->n; v++) sum += load[v];
     for (v = 0; v < lap->n; v++) share[v] = load[v] / sum;
     for (p = 0; p < lap->n; p++) {
@@ -368,7 +367,7 @@ static void src_want_distances(trial_work *w, hd_distance_kind kind, double t, c
         own = r < 0 ? -1 : lap->component[r];
     }
     for (v = 0; v < lap->n; v++) {
-        const int out = kind >= HD_DISTANCE_COMMUTE && (apart || lap->row[v] < 0 || lap->component[lap->row[v]] != own);
+        const int out = trial_timeless(kind) && (apart || lap->row[v] < 0 || lap->component[lap->row[v]] != own);
         w->want[v] = out ? (quad)HUGE_VAL : trial_want_distance_from(w, share, v, kind == HD_DISTANCE_WEIGHTED, w->off + v);
         if (out) w->off[v] = 0;
     }

@@ -305,11 +305,10 @@ static void spec_kernels_of(const char *text, int good) {
         }
     }
     for (k = HD_DISTANCE_CLASSICAL; k <= HD_DISTANCE_BIHARMONIC; k++) {
-        const int timed = k <= HD_DISTANCE_WEIGHTED;
+        const int timed = !trial_timeless(k);
         CHECK(hd_spectrum_distance(z, (hd_distance_kind)k, timed ? 5 : 1, times, VERTICES(1, &source), U, bound, 0, NULL) == HD_OK);
         for (q = 0; q < (timed ? 5 : 1); q++) {
-            if (timed) trial_filter_for(w, 2 * times[q], 0);
-            else truth_filter_fill(&w->s->f, w->T, k == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
+            trial_distance_for(w, k, 2 * times[q], 0);
             for (v = 0; v < n; v++) w->want[v] = trial_want_distance(w, source, v, k == HD_DISTANCE_WEIGHTED, w->off + v);
             spec_within(w, U + q * n, bound + q * n, n, 0, "distance", times[q]);
             for (v = 0; v < n && timed && q == 3; v++) CHECK(v == source || bound[q * n + v] < 0.05 * U[q * n + v]);
@@ -396,7 +395,7 @@ static void spec_units(void) {
         for (a = HD_DISTANCE_CLASSICAL; a <= HD_DISTANCE_BIHARMONIC; a++) {
             const int power = a == HD_DISTANCE_CLASSICAL ? k / 2 : a == HD_DISTANCE_COMMUTE ? 0 : -k / 2;
             double d[12], off[12];
-            CHECK(hd_spectrum_distance(s, (hd_distance_kind)a, a < HD_DISTANCE_COMMUTE, &t, VERTICES(1, &source), d, off, 0,
+            CHECK(hd_spectrum_distance(s, (hd_distance_kind)a, !trial_timeless(a), &t, VERTICES(1, &source), d, off, 0,
                 NULL) == HD_OK);
             for (i = 0; i < 12; i++) {
                 d[i] = ldexp(d[i], power);

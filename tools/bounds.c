@@ -336,7 +336,7 @@ static void keep_record(const trial *c, double unit, double ratio) {
     static const char *const ranges[] = {"a below 1e-2", "b 1e-2 to 1", "c 1 to 1e2", "d 1e2 to 1e4",
                                          "e 1e4 to 1e6", "f above 1e6"};
     static const double limits[] = {1e-2, 1, 1e2, 1e4, 1e6};
-    const int timeless = c->query >= QUERY_PAIRS && (c->kind == HD_DISTANCE_COMMUTE || c->kind == HD_DISTANCE_BIHARMONIC);
+    const int timeless = c->query >= QUERY_PAIRS && trial_timeless(c->kind);
     char shape[VALUE_SIZE];
     record r;
     int range = 0;

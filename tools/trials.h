@@ -572,6 +572,9 @@ static const char *const trial_queries[] = {"apply",    "column", "times",    "d
                                           "distance", "distance_from", NULL};
 static const char *const trial_kernels[] = {"operator", "symmetric", NULL};
 static const char *const trial_kinds[] = {"classical", "weighted", "commute", "biharmonic", NULL};
+
+/* Have distances of this kind no time? */
+static int trial_timeless(int kind) { return kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC; }
 static const char *const trial_methods[] = {"auto", "iterative", "direct", "krylov", "local", NULL};
 static const char *const trial_solvers[] = {"auto", "cocg", "no number", "minres", "lanczos", NULL};
 static const char *const trial_preconds[] = {"auto", "none", "jacobi", "ssor", "ildl", "mildl", NULL};
@@ -1046,6 +1049,12 @@ static void trial_filter_for(trial_work *w, double t, int squared) {
     else truth_filter_fill(&w->s->f, w->T, FORM_HEAT, t, w->own, squared);
 }
 
+/* What distances of this kind are made of; t: of the kernel. */
+static void trial_distance_for(trial_work *w, int kind, double t, int squared) {
+    if (!trial_timeless(kind)) trial_filter_for(w, t, squared);
+    else truth_filter_fill(&w->s->f, w->T, kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
+}
+
 /* A field on the vertices. */
 static void trial_make_field(const trial_work *w, int what, uint64_t *seed, double *f) {
     const hd_laplacian *lap = w->s->lap;
@@ -1294,20 +1303,17 @@ static void trial_run_entries(trial_work *w, hd_heat *heat) {
         trial_row_name(w, symmetric ? "entries of k_t" : "entries of K_t");
         hd_heat_entries(heat, (hd_kernel)c->kernel, 1, &c->t, k, i, j, K, &w->rep, NULL);
     } else {
-        trial_row_name(w, c->kind >= HD_DISTANCE_COMMUTE ? "pairs, no time" : "pairs, d");
+        trial_row_name(w, trial_timeless(c->kind) ? "pairs, no time" : "pairs, d");
         hd_heat_distance_pairs(heat, (hd_distance_kind)c->kind, 1, &c->t, k, i, j, d, &w->rep, NULL);
     }
     if (trial_failed(w)) return;
     if (c->query == QUERY_PAIRS) {
         /* distances first; with a filter they are those of columns at t */
-        if (c->kind >= HD_DISTANCE_COMMUTE)
-            truth_filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0,
-                        NULL, 0);
-        else trial_filter_for(w, c->t, 1);
+        trial_distance_for(w, c->kind, c->t, 1);
         for (q = 0; q < k; q++) {
             const int32_t a = w->s->lap->row[i[q]], b = w->s->lap->row[j[q]];
             if (i[q] == j[q] ||
-                (c->kind >= HD_DISTANCE_COMMUTE && (a < 0 || b < 0 || w->T->comp[a] != w->T->comp[b])))
+                (trial_timeless(c->kind) && (a < 0 || b < 0 || w->T->comp[a] != w->T->comp[b])))
                 continue;
             w->want[m] = trial_want_distance(w, i[q], j[q], weighted, w->off + m);
             d[m++] = d[q];
@@ -1346,7 +1352,7 @@ static void trial_run_distance(trial_work *w, hd_heat *heat) {
                   k = c->k < 1   ? 1
                       : c->k > 8 ? 8
                                  : c->k,
-                  m = c->kind >= HD_DISTANCE_COMMUTE ? 1 : c->n_times;
+                  m = trial_timeless(c->kind) ? 1 : c->n_times;
     uint64_t seed = (uint64_t)c->seed + 1;
     double *D = TRUTH_NEW(double, n * k * m), *t = trial_times(c);
     char name[32];
@@ -1364,13 +1370,10 @@ static void trial_run_distance(trial_work *w, hd_heat *heat) {
         for (q = 0; q < m; q++) {
             double *d = D + (r * m + q) * n;
             int32_t count = 0, skip = -1;
-            if (c->kind >= HD_DISTANCE_COMMUTE)
-                truth_filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC,
-                            0, NULL, 0);
-            else trial_filter_for(w, 2 * t[q], 0);
+            trial_distance_for(w, c->kind, 2 * t[q], 0);
             for (v = 0; v < n; v++) {
                 const int32_t a = lap->row[v], b = lap->row[source[r]];
-                if (c->kind >= HD_DISTANCE_COMMUTE && (a < 0 || b < 0 || w->T->comp[a] != w->T->comp[b]))
+                if (trial_timeless(c->kind) && (a < 0 || b < 0 || w->T->comp[a] != w->T->comp[b]))
                     continue;
                 if (v == source[r]) skip = count;
                 w->want[count] =
@@ -1413,7 +1416,7 @@ static quad trial_want_distance_from(trial_work *w, const quad *c, int32_t v, in
 static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
     const trial *c = w->c;
     const hd_laplacian *lap = w->s->lap;
-    const int timeless = c->kind >= HD_DISTANCE_COMMUTE;
+    const int timeless = trial_timeless(c->kind);
     const int32_t n = lap->n, k = c->k < 1 ? 1 : c->k > 8 ? 8 : c->k, m = timeless ? 1 : c->n_times;
     uint64_t seed = (uint64_t)c->seed + 1;
     double *D = TRUTH_NEW(double, n * k * m), *field = TRUTH_NEW(double, n * k), *t = trial_times(c);
@@ -1431,9 +1434,7 @@ static void trial_run_distance_from(trial_work *w, hd_heat *heat) {
         double *d = D + q * n;
         quad sum = 0;
         int32_t count = 0;
-        if (timeless)
-            truth_filter_fill(&w->s->f, w->T, c->kind == HD_DISTANCE_COMMUTE ? FORM_COMMUTE : FORM_BIHARMONIC, 0, NULL, 0);
-        else trial_filter_for(w, 2 * t[q % m], 0);
+        trial_distance_for(w, c->kind, 2 * t[q % m], 0);
         for (v = 0; v < n; v++) sum += f[v];
         for (v = 0; v < n; v++) share[v] = f[v] / sum;
         for (v = 0; v < n; v++) {
@@ -1672,7 +1673,7 @@ static int trial_run(trial_subject *s, trial *c, int stored) {
     trial_counts[c->query].asked++;
     ok = trial_run_one(s, c, text, 0);
     trial_counts[c->query].refused += !ok;
-    if (stored && s->has_stored && !(c->query >= QUERY_PAIRS && c->kind >= HD_DISTANCE_COMMUTE))
+    if (stored && s->has_stored && !(c->query >= QUERY_PAIRS && trial_timeless(c->kind)))
         trial_run_one(s, c, text, 1);
     return ok;
 }

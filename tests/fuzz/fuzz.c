@@ -625,6 +625,8 @@ static void fz_one_more(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_
     if (which == 3 || which == 4) FZ(fz_no_nan(t, q->n_times));
 }
 
+static int fz_timeless(hd_distance_kind kind) { return kind == HD_DISTANCE_COMMUTE || kind == HD_DISTANCE_BIHARMONIC; }
+
 static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *in, const fz_context *c) {
     static const char *const names[] = {"fields", "columns", "diagonal", "trace", "distance", "pairs", "sample", "entries", "estimate"};
     const int64_t n = lap->n;
@@ -647,11 +649,11 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     if (which == 2) st = hd_heat_diagonal(heat, q->kernel, q->n_times, q->t, q->u, 0, NULL, NULL, &rep, &e), values = n * q->n_times;
     if (which == 3) st = hd_heat_diagonal(heat, HD_KERNEL_OPERATOR, q->n_times, q->t, NULL, 0, q->u, NULL, &rep, &e), values = q->n_times;
     if (which == 4) {
-        if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
+        if (fz_timeless(q->kind)) q->n_times = 1;
         st = hd_heat_distance(heat, q->kind, q->n_times, q->t, VERTICES(q->k, q->id), q->u, 0, &rep, &e), values = n * q->n_times * q->k;
     }
     if (which == 5) {
-        if (q->kind >= HD_DISTANCE_COMMUTE) q->n_times = 1;
+        if (fz_timeless(q->kind)) q->n_times = 1;
         st = hd_heat_distance_pairs(heat, q->kind, q->n_times, q->t, q->n_pairs, q->i, q->j, q->u, &rep, &e), values = q->n_pairs * q->n_times;
     }
     if (which == 6) {
@@ -664,7 +666,7 @@ static void fz_one(hd_heat *heat, const hd_laplacian *lap, fz_query *q, fz_in *i
     fz_check_report(st, &rep);
     if (st < 0) return;
     FZ(fz_no_nan(q->u, values));
-    if (st == HD_OK && (which < 4 || which == 7 || q->kind < HD_DISTANCE_COMMUTE)) FZ(fz_finite(q->u, values));
+    if (st == HD_OK && (which < 4 || which == 7 || !fz_timeless(q->kind))) FZ(fz_finite(q->u, values));
     if (which >= 4 && which < 6) for (; values > 0; values--) FZ(q->u[values - 1] >= 0);
 }
 
@@ -738,7 +740,7 @@ static void fz_spectrum(fz_in *in, const hd_laplacian *lap, const fz_context *c)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
         if (fz_status(hd_spectrum_diagonal(s, q.kernel, q.n_times, q.t, q.u, q.v, 0, &e), &e, c) >= 0)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.n_times));
-        if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
+        if (fz_timeless(q.kind)) q.n_times = 1;
         if (fz_status(hd_spectrum_distance(s, q.kind, q.n_times, q.t, VERTICES(q.k, q.id), q.u, q.v, 0, &e), &e, c) >= 0)
             FZ(fz_no_nan(q.u, (int64_t)lap->n * q.k * q.n_times) && fz_no_nan(q.v, (int64_t)lap->n * q.k * q.n_times));
         fz_query_free(&q);
@@ -1035,7 +1037,7 @@ static void fz_sources_ask(fz_in *in, const shape *s, const hd_laplacian *lap, h
     for (k = 0; k < q.k && st == HD_OK && q.kernel == HD_KERNEL_SYMMETRIC; k++)
         for (m = 0; m < q.n_times; m++) fz_source_heat(lap, &from.all, k, q.u + (size_t)(k * q.n_times + m) * (size_t)lap->n, &rep);
     fz_what = "distance from sources";
-    if (q.kind >= HD_DISTANCE_COMMUTE) q.n_times = 1;
+    if (fz_timeless(q.kind)) q.n_times = 1;
     st = fz_status(hd_heat_distance(heat, q.kind, q.n_times, q.t, &from.all, q.u, 0, &rep, &e), &e, c);
     fz_check_report(st, &rep);
     if (st >= 0) for (k = 0; k < lap->n * q.k * q.n_times; k++) FZ(q.u[k] >= 0);
