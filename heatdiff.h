@@ -12017,10 +12017,6 @@ static const double hdi_shared_table[] = {
       -0.0334504, 0.697108, -0.130641, 0.917707, -0.261849, 1.23197, -0.460129, 1.6667, -0.762517, 2.25912,
       -1.24905, 3.05467, -2.01932, 4.06498, -3.1912, 5.31831, -4.95948, 6.83704, -7.63494, 8.63822,
       -11.8968, 10.7957,
-    100, 16, 1.55e-09,
-      0.071779, 0.018009, 0.064929, 0.054935, 0.051367, 0.094566, 0.030965, 0.13957, 0.00752, 0.19549,
-      -0.013449, 0.27096, -0.038951, 0.40095, -0.089922, 0.59356, -0.18009, 0.8728, -0.3292, 1.2966,
-      -0.62636, 1.9036, -1.1383, 2.7161, -1.9904, 3.8027, -3.3989, 5.193, -5.6877, 6.9052, -9.5362, 8.9986,
     180, 16, 7.74e-09,
       0.03812, 0.01021, 0.03391, 0.03129, 0.02573, 0.05456, 0.01468, 0.08146, 0.002351, 0.1149,
       -0.005066, 0.1723, -0.0212, 0.2659, -0.04737, 0.4077, -0.1006, 0.6459, -0.2242, 0.9974, -0.4565, 1.5,
@@ -12129,22 +12125,6 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     return 0;
 }
 
-/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, where q = 0 means infinity. size receives the sum of the
- * moduli of all terms. */
-static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
-    const double s = p < 745 / tau * q ? tau * p / q : 745, first = (1 + s) * exp(-s), top = q + tau * p;
-    double sum = first;
-    int32_t i;
-    *size = (1 + s) * first;                     /* s is off by half an ulp; exp(-745) is the last above 0 */
-    for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 a = set->a[i], d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
-        const double inv = 1 / hdi_cabs2(d);
-        sum += 2 * top * (a.re * d.re + a.im * d.im) * inv;
-        *size += 2 * top * sqrt(hdi_cabs2(a) * inv);
-    }
-    return sum;
-}
-
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 98; }
 
 /* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
@@ -12165,7 +12145,7 @@ static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
  * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
     const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
-    double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
+    double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, largest = 0;
     int32_t i, j, m;
     for (i = 0; i < set->n_poles; i++) {
         const hd_c64 theta = set->theta[i];
@@ -12183,9 +12163,13 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m));
-        most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
-        largest = hdi_max(largest, size);
+        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m)), y = hi > 0 ? u : 1 / u;
+        const double weight = 1 + tau * y, first = exp(-tau * y);
+        double size = weight * first;            /* tau y is off by half an ulp */
+        for (i = 0; i < set->n_poles; i++)
+            size += 2 * hdi_cabs(set->a[i]) / hypot(y + set->theta[i].re, set->theta[i].im);
+        most = hdi_max(most, weight * fabs(first - hdi_rational_eval(set, -y)));
+        largest = hdi_max(largest, weight * size);
     }
     return (most + rest + 4 * DBL_EPSILON * largest) / cos(HDI_PI / 8) + rest;
 }
@@ -13095,9 +13079,7 @@ typedef struct hdi_lane {
     hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
-    double first_norm;           /* bound on |x|_B of one of the solutions, and its pole */
-    double energy;               /* bound of f'B (B + tL)^-1 B f */
-    int32_t first_pole;
+    double resolvent, energy;    /* bounds of |(B + tL)^-1 B f|_B and of f'B (B + tL)^-1 B f */
     int32_t negative;            /* x'Lx < 0 was seen */
     int32_t watch;               /* direct: a row whose entries of all solutions are kept, -1: none */
     hd_c64 pole_value[HD_MAX_POLES];
@@ -13270,14 +13252,15 @@ static HDI_NOINLINE void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
-    lane->residual = lane->first_norm = 0;
-    lane->negative = lane->first_pole = 0;
+    lane->residual = 0;
+    lane->negative = 0;
+    lane->resolvent = lane->f_norm;
     lane->energy = lane->f_norm * lane->f_norm;
 }
 
-/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed.
- * off: bound on its residual. */
+/* Notes what the solution x of pole p tells of the resolvent (B + tL)^-1 B f: its norm is at most max(1,
+ * |theta|) |x|_B, since |s + theta| <= max(1, |theta|) (1 + s) for s >= 0, and f'B (B + tL)^-1 B f a factor
+ * times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed. off: of its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                            double norm, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
@@ -13287,8 +13270,7 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
         if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
-    lane->first_pole = p;
-    lane->first_norm = norm + error;
+    lane->resolvent = hdi_min(lane->resolvent, hdi_max(1, hdi_cabs(theta)) * (norm + error));
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
     if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
         lane->negative = 1;
@@ -13326,22 +13308,20 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        &k->x->re, 2);
 }
 
-/* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
- * share of what is left. fresh: each starts from the solution of the one before it, else where it is. */
+/* Runs the systems until the bound of their part of the answer's error is at most aim, of which each has an
+ * equal share. fresh: each starts from the solution of the one before it, else where it is. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
-    double left = aim;
     int32_t p;
     part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
         hdi_iteration *k = lane->k + p;
         const double weight = hdi_pole_size(&fam->set, p);
-        const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
-        const double share = weight > 0 ? fair / weight : DBL_MAX;
+        const double share = weight > 0 ? aim / n_poles / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
         const int runs = fresh || k->r_norm > target;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
@@ -13356,7 +13336,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
             return status;
         }
         if (status > worst) worst = status;
-        left -= weight * hdi_pole_error(k);
     }
     return worst;
 }
@@ -13912,12 +13891,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
     lane->off_m.rational =
         hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
-    if (hdi_finite(weighted) && set->n_poles > 0) {
-        /* |x + theta| <= max(1, |theta|) (1 + x) for x >= 0 */
-        const double most = hdi_max(1, hdi_cabs(set->theta[lane->first_pole]));
-        const double resolvent = constants ? lane->f_norm : most * lane->first_norm;
-        lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
-    }
+    if (hdi_finite(weighted) && set->n_poles > 0)
+        lane->off.rational =
+            hdi_min(lane->off.rational, weighted * (constants ? lane->f_norm : lane->resolvent));
 }
 
 /* Is u'Lu of an answer negative, beyond rounding? Only matrices of the caller's own are tested. */
