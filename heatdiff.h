@@ -12017,10 +12017,6 @@ static const double hdi_shared_table[] = {
       -0.0334504, 0.697108, -0.130641, 0.917707, -0.261849, 1.23197, -0.460129, 1.6667, -0.762517, 2.25912,
       -1.24905, 3.05467, -2.01932, 4.06498, -3.1912, 5.31831, -4.95948, 6.83704, -7.63494, 8.63822,
       -11.8968, 10.7957,
-    100, 16, 1.55e-09,
-      0.071779, 0.018009, 0.064929, 0.054935, 0.051367, 0.094566, 0.030965, 0.13957, 0.00752, 0.19549,
-      -0.013449, 0.27096, -0.038951, 0.40095, -0.089922, 0.59356, -0.18009, 0.8728, -0.3292, 1.2966,
-      -0.62636, 1.9036, -1.1383, 2.7161, -1.9904, 3.8027, -3.3989, 5.193, -5.6877, 6.9052, -9.5362, 8.9986,
     180, 16, 7.74e-09,
       0.03812, 0.01021, 0.03391, 0.03129, 0.02573, 0.05456, 0.01468, 0.08146, 0.002351, 0.1149,
       -0.005066, 0.1723, -0.0212, 0.2659, -0.04737, 0.4077, -0.1006, 0.6459, -0.2242, 0.9974, -0.4565, 1.5,
@@ -12129,22 +12125,6 @@ static int hdi_shared_pick(hd_rational *out, double lambda, double target) {
     return 0;
 }
 
-/* (1 + tau y)(exp(-tau y) - c(-y)) at y = p/q, where q = 0 means infinity. size receives the sum of the
- * moduli of all terms. */
-static double hdi_shared_error(const hd_rational *set, double tau, double p, double q, double *size) {
-    const double s = p < 745 / tau * q ? tau * p / q : 745, first = (1 + s) * exp(-s), top = q + tau * p;
-    double sum = first;
-    int32_t i;
-    *size = (1 + s) * first;                     /* s is off by half an ulp; exp(-745) is the last above 0 */
-    for (i = 0; i < set->n_poles; i++) {
-        const hd_c64 a = set->a[i], d = hdi_c(p + q * set->theta[i].re, q * set->theta[i].im);
-        const double inv = 1 / hdi_cabs2(d);
-        sum += 2 * top * (a.re * d.re + a.im * d.im) * inv;
-        *size += 2 * top * sqrt(hdi_cabs2(a) * inv);
-    }
-    return sum;
-}
-
 static int32_t hdi_shared_points(int32_t n_poles) { return 8 * n_poles + 98; }
 
 /* How far the exponential part of the weighted error is from a polynomial of degree m on y in [c - w, c +
@@ -12165,7 +12145,7 @@ static double hdi_shared_exp_rest(double tau, double c, double w, int32_t m) {
  * evaluation. */
 static double hdi_shared_panel(const hd_rational *set, double tau, double lo, double hi, double goal) {
     const double c = hi > 0 ? (lo + hi) / 2 : 0.5 / lo, w = hi > 0 ? (hi - lo) / 2 : 0.5 / lo;
-    double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, size, largest = 0;
+    double inv[HD_MAX_POLES], part[HD_MAX_POLES], rest = HUGE_VAL, most = 0, largest = 0;
     int32_t i, j, m;
     for (i = 0; i < set->n_poles; i++) {
         const hd_c64 theta = set->theta[i];
@@ -12183,9 +12163,13 @@ static double hdi_shared_panel(const hd_rational *set, double tau, double lo, do
         if (rest <= 0.02 * goal || m == HDI_SHARED_MOST) break;
     }
     for (j = 0; j < 4 * m; j++) {
-        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m));
-        most = hdi_max(most, fabs(hdi_shared_error(set, tau, hi > 0 ? u : 1, hi > 0 ? 1 : u, &size)));
-        largest = hdi_max(largest, size);
+        const double u = c + w * cos(HDI_PI * (j + 0.5) / (4 * m)), y = hi > 0 ? u : 1 / u;
+        const double weight = 1 + tau * y, first = exp(-tau * y);
+        double size = weight * first;            /* tau y is off by half an ulp */
+        for (i = 0; i < set->n_poles; i++)
+            size += 2 * hdi_cabs(set->a[i]) / hypot(y + set->theta[i].re, set->theta[i].im);
+        most = hdi_max(most, weight * fabs(first - hdi_rational_eval(set, -y)));
+        largest = hdi_max(largest, weight * size);
     }
     return (most + rest + 4 * DBL_EPSILON * largest) / cos(HDI_PI / 8) + rest;
 }
@@ -13096,9 +13080,7 @@ typedef struct hdi_lane {
     hd_evidence rounding;        /* how the part of rounding is known */
     double residual;
     double b_norm;               /* of the right-hand side, in the norm of diag(B)^-1 */
-    double first_norm;           /* bound on |x|_B of one of the solutions, and its pole */
-    double energy;               /* bound of f'B (B + tL)^-1 B f */
-    int32_t first_pole;
+    double resolvent, energy;    /* bounds of |(B + tL)^-1 B f|_B and of f'B (B + tL)^-1 B f */
     int32_t negative;            /* x'Lx < 0 was seen */
     int32_t watch;               /* direct: a row whose entries of all solutions are kept, -1: none */
     hd_c64 pole_value[HD_MAX_POLES];
@@ -13271,14 +13253,15 @@ static HDI_NOINLINE void hdi_lane_clear_off(hdi_lane *lane) {
     memset(&lane->off, 0, sizeof lane->off);
     memset(&lane->off_m, 0, sizeof lane->off_m);
     lane->rounding = HD_EVIDENCE_PROVEN;
-    lane->residual = lane->first_norm = 0;
-    lane->negative = lane->first_pole = 0;
+    lane->residual = 0;
+    lane->negative = 0;
+    lane->resolvent = lane->f_norm;
     lane->energy = lane->f_norm * lane->f_norm;
 }
 
-/* Notes what the solution x of pole p tells of the resolvent: |x|_B, and a bound of f'B (B + tL)^-1 B f,
- * which is at most a factor times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed.
- * off: bound on its residual. */
+/* Notes what the solution x of pole p tells of the resolvent (B + tL)^-1 B f: its norm is at most max(1,
+ * |theta|) |x|_B, since |s + theta| <= max(1, |theta|) (1 + s) for s >= 0, and f'B (B + tL)^-1 B f a factor
+ * times Re of rhs'x. Real parts of x are stride apart. norm: |x|_B as computed. off: of its residual. */
 static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rational *set, int32_t p,
                            double norm, double off, const double *x, int64_t stride) {
     const hd_c64 theta = set->theta[p];
@@ -13288,8 +13271,7 @@ static void hdi_lane_first(hdi_lane *lane, const hd_laplacian *lap, const hd_rat
     int32_t i;
     for (i = 0; i < lap->n_active; i++)
         if (lane->rhs[i] != 0) sum += lane->rhs[i] * x[stride * i];
-    lane->first_pole = p;
-    lane->first_norm = norm + error;
+    lane->resolvent = hdi_min(lane->resolvent, hdi_max(1, hdi_cabs(theta)) * (norm + error));
     /* t x^*Lx = Re x^*b - Re theta |x|_B^2, which rounding alone does not make negative */
     if (sum - theta.re * norm2 < -1e-6 * (fabs(sum) + fabs(theta.re) * norm2) - lane->b_norm * error)
         lane->negative = 1;
@@ -13327,22 +13309,20 @@ static void hdi_lane_sum(hdi_lane *lane, const hdi_family *fam) {
                        &k->x->re, 2);
 }
 
-/* Runs the systems until the bound of their part of the answer's error is at most aim. Each may use an equal
- * share of what is left. fresh: each starts from the solution of the one before it, else where it is. */
+/* Runs the systems until the bound of their part of the answer's error is at most aim, of which each has an
+ * equal share. fresh: each starts from the solution of the one before it, else where it is. */
 static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, double aim,
                               const hdi_watch *watch, hd_error *e) {
     const int32_t n_poles = fam->set.n_poles;
     const double b_norm = sqrt(hdi_cnorm2w(lane->b, fam->weight, fam->lap->n_active));
     hdi_watch part = *watch;
     hd_status worst = HD_OK, status;
-    double left = aim;
     int32_t p;
     part.share = n_poles > 0 ? watch->share / n_poles : 0;
     for (p = n_poles; p-- > 0;) {
         hdi_iteration *k = lane->k + p;
         const double weight = hdi_pole_size(&fam->set, p);
-        const double fair = hdi_max(left / (p + 1), 0.1 * aim / n_poles);
-        const double share = weight > 0 ? fair / weight : DBL_MAX;
+        const double share = weight > 0 ? aim / n_poles / weight : DBL_MAX;
         const double target = share * sqrt(fam->lap->b_ratio) * hdi_pole_distance(fam->set.theta[p]);
         const int runs = fresh || k->r_norm > target;
         if (runs && hdi_family_shares(fam)) hdi_precond_make(&k->m, k->r);
@@ -13357,7 +13337,6 @@ static hd_status hdi_lane_run(hdi_lane *lane, const hdi_family *fam, int fresh, 
             return status;
         }
         if (status > worst) worst = status;
-        left -= weight * hdi_pole_error(k);
     }
     return worst;
 }
@@ -13913,12 +13892,9 @@ static void hdi_rational_bound(const hd_laplacian *lap, const hd_rational *set, 
     lane->off.rational = hdi_set_uniform(set) * lane->f_norm;
     lane->off_m.rational =
         hdi_finite(weighted) ? weighted * (constants ? lane->f_norm : sqrt(lane->energy)) : HUGE_VAL;
-    if (hdi_finite(weighted) && set->n_poles > 0) {
-        /* |x + theta| <= max(1, |theta|) (1 + x) for x >= 0 */
-        const double most = hdi_max(1, hdi_cabs(set->theta[lane->first_pole]));
-        const double resolvent = constants ? lane->f_norm : most * lane->first_norm;
-        lane->off.rational = hdi_min(lane->off.rational, weighted * hdi_min(resolvent, lane->f_norm));
-    }
+    if (hdi_finite(weighted) && set->n_poles > 0)
+        lane->off.rational =
+            hdi_min(lane->off.rational, weighted * (constants ? lane->f_norm : lane->resolvent));
 }
 
 /* Is u'Lu of an answer negative, beyond rounding? Only matrices of the caller's own are tested. */
@@ -14422,9 +14398,9 @@ typedef struct hdi_krylov {
     double alpha[HDI_KRYLOV_MAX][HDI_WIDE], beta[HDI_KRYLOV_MAX + 1][HDI_WIDE];  /* beta[0] is 0 */
     double noise[HDI_KRYLOV_MAX][HDI_WIDE];   /* what rounding can do to a solve, in the norm of D^-1 */
     double seen;                 /* largest residual of a solve that was found, relative to its noise */
-    double f_norm[HDI_WIDE], fixed[HDI_WIDE];   /* |f|_B without its constants, the square of theirs */
-    int32_t done[HDI_WIDE];      /* steps that were enough, 0: not yet, -1: there are only constants */
-    hdi_ritz ritz[HDI_WIDE];     /* of those that are done, with all rows */
+    /* |f|_B without its constants, 0 if there are only these, and the square of their norm */
+    double f_norm[HDI_WIDE], fixed[HDI_WIDE];
+    hdi_ritz ritz[HDI_WIDE];     /* in the end, with all rows */
     double g;
     double from;                 /* the time that the fields are answers of, with bounds on their errors */
     hdi_parts before[HDI_WIDE];
@@ -14449,26 +14425,29 @@ static void hdi_krylov_free(hdi_krylov *z, hd_context *ctx) {
     memset(z, 0, sizeof *z);
 }
 
-/* out[r] = sum_i weight_i x_ir y_ir. Where there are weights y is x; else NULL. */
+/* out[r] = sum_i weight_i x_ir y_ir for all eight r, also of a single vector. Where there are weights y is x;
+ * else NULL. */
 static void hdi_wide_dots(const double *x, const double *y, const double *weight, int64_t n, int32_t wide,
                           double *HDI_RESTRICT out) {
+    const double one = wide > 1 ? 0 : weight ? hdi_norm2w(x, weight, n) : hdi_dot(x, y, n);
     int64_t i;
     int r;
-    if (wide == 1) {
-        out[0] = weight ? hdi_norm2w(x, weight, n) : hdi_dot(x, y, n);
-        return;
-    }
-    for (r = 0; r < HDI_WIDE; r++) out[r] = 0;
-    for (i = 0; i < n; i++) {
+    for (r = 0; r < HDI_WIDE; r++) out[r] = one;
+    for (i = 0; i < n && wide > 1; i++) {
         const double w = weight ? weight[i] : 1;
         for (r = 0; r < HDI_WIDE; r++) out[r] += w * (x[HDI_WIDE * i + r] * y[HDI_WIDE * i + r]);
     }
 }
 
+/* Doubles of the vectors side by side: a multiple of 8. */
+static int64_t hdi_krylov_size(const hdi_krylov *z) {
+    return ((int64_t)z->m->lap->n_active * z->wide + HDI_WIDE - 1) / HDI_WIDE * HDI_WIDE;
+}
+
 /* Starts with the fields f and rhs = B f of z->k lanes, without their constants and of norm one. */
 static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const uint64_t n = (uint64_t)lap->n_active, count = n * (uint64_t)z->wide;
+    const uint64_t n = (uint64_t)lap->n_active, count = (uint64_t)hdi_krylov_size(z);
     int64_t i;
     int32_t r;
     if (!z->v[0]) z->v[0] = HDI_NEW(ctx, double, count, e);
@@ -14484,7 +14463,6 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
     for (r = 0; r < z->wide; r++) {
         hdi_lane *one = lane + (r < z->k ? r : 0);
         double norm;
-        z->done[r] = -1;
         z->f_norm[r] = z->fixed[r] = 0;
         if (r >= z->k || one->skip) continue;
         z->fixed[r] = hdi_lane_means_norm2(one, lap);
@@ -14492,7 +14470,6 @@ static hd_status hdi_krylov_start(hdi_krylov *z, hdi_lane *lane, hd_context *ctx
         norm = sqrt(hdi_max(0, hdi_dot(one->f, one->rhs, lap->n_active)));
         if (!(norm > DBL_EPSILON * one->f_norm)) continue;
         z->f_norm[r] = norm;
-        z->done[r] = 0;
         for (i = 0; i < lap->n_active; i++) {
             z->v[0][z->wide * i + r] = one->f[i] / norm;
             z->c[z->wide * i + r] = one->rhs[i] / norm;
@@ -14519,33 +14496,23 @@ static void hdi_krylov_probe(hdi_krylov *z) {
     }
 }
 
-/* w -= alpha v + beta v_old, and v = w/beta with c = B v, for `wide` vectors side by side. */
-static HDI_INLINE void hdi_krylov_subtract(const int wide, double *HDI_RESTRICT w,
-                                           const double *HDI_RESTRICT v, const double *HDI_RESTRICT v_old,
-                                           const double *alpha, const double *beta, int64_t n) {
+/* to = a x - b y - c z for vectors side by side, with a, b and c [8]; count is a multiple of 8. */
+static void hdi_wide_sum(double *to, const double *a, const double *x, const double *b, const double *y,
+                         const double *c, const double *z, int64_t count) {
     int64_t i;
     int r;
-    for (i = 0; i < n; i++)
-        for (r = 0; r < wide; r++)
-            w[wide * i + r] -= alpha[r] * v[wide * i + r] + beta[r] * v_old[wide * i + r];
-}
-
-static HDI_INLINE void hdi_krylov_divide(const int wide, const double *HDI_RESTRICT w, double *HDI_RESTRICT v,
-                                         double *HDI_RESTRICT c, const double *inverse, int64_t n) {
-    int64_t i;
-    int r;
-    for (i = 0; i < n; i++) {
-        for (r = 0; r < wide; r++) {
-            v[wide * i + r] = w[wide * i + r] * inverse[r];
-            c[wide * i + r] *= inverse[r];
-        }
+    for (i = 0; i < count; i += HDI_WIDE) {
+        double sum[HDI_WIDE];
+        for (r = 0; r < HDI_WIDE; r++) sum[r] = a[r] * x[i + r] - b[r] * y[i + r] - c[r] * z[i + r];
+        for (r = 0; r < HDI_WIDE; r++) to[i + r] = sum[r];
     }
 }
 
 /* One step for all. */
 static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const int64_t n = lap->n_active, count = n * z->wide;
+    static const double one[HDI_WIDE] = {1, 1, 1, 1, 1, 1, 1, 1}, zero[HDI_WIDE] = {0, 0, 0, 0, 0, 0, 0, 0};
+    const int64_t n = lap->n_active, count = hdi_krylov_size(z);
     const int32_t j = z->steps, wide = z->wide;
     const double *v = z->v[j], *v_old = j > 0 ? z->v[j - 1] : z->v[j];
     double *w = z->w, norm[HDI_WIDE], inv[HDI_WIDE];
@@ -14557,19 +14524,18 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     s = hdi_sweep_open(&z->m->shifted, wide, w, z->work);
     hdi_sweep_run(&s, ctx);
     hdi_wide_dots(w, w, z->m->noise_shift, n, wide, z->noise[j]);
-    for (r = 0; r < wide; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
+    for (r = 0; r < HDI_WIDE; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
     if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, NULL, n, wide, z->alpha[j]);
-    if (wide == 1) hdi_krylov_subtract(1, w, v, v_old, z->alpha[j], z->beta[j], n);
-    else hdi_krylov_subtract(HDI_WIDE, w, v, v_old, z->alpha[j], z->beta[j], n);
+    hdi_wide_sum(w, one, w, z->alpha[j], v, z->beta[j], v_old, count);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, NULL, n, wide, norm);
-    for (r = 0; r < wide; r++) {
+    for (r = 0; r < HDI_WIDE; r++) {
         z->beta[j + 1][r] = norm[r] > 0 ? sqrt(norm[r]) : 0;
         inv[r] = norm[r] > 0 ? 1 / z->beta[j + 1][r] : 0;
     }
-    if (wide == 1) hdi_krylov_divide(1, w, z->v[j + 1], z->c, inv, n);
-    else hdi_krylov_divide(HDI_WIDE, w, z->v[j + 1], z->c, inv, n);
+    hdi_wide_sum(z->v[j + 1], inv, w, zero, w, zero, w, count);
+    hdi_wide_sum(z->c, inv, z->c, zero, w, zero, w, count);
     z->steps = j + 1;
     return HD_OK;
 }
@@ -14611,7 +14577,6 @@ static hd_status hdi_krylov_end(hdi_krylov *z, int32_t r, hd_error *e) {
     double *room = HDI_NEW(z->m->ctx, double, m * (m + 1), e);
     hdi_free(z->m->ctx, z->ritz[r].mu);
     z->ritz[r].mu = room;
-    z->done[r] = z->steps;
     return room ? hdi_krylov_ritz(z, r, z->steps, room, z->ritz + r, e) : e->status;
 }
 
@@ -14627,13 +14592,13 @@ static double hdi_ritz_size(const hdi_ritz *s, double tau) {
 }
 
 /* Coefficients of the basis for right-hand side r at time t, times |f|_B: y = exp(-t (T^-1 - 1)/g) e_1, or
- * derivative `rate` of it times t^rate, and zeros up to the longest basis. */
+ * derivative `rate` of it times t^rate. */
 static void hdi_krylov_coefficients(const hdi_krylov *z, int32_t r, double t, int rate, double *y) {
-    const int32_t m = hdi_high32(z->done[r], 0);
+    const int32_t m = z->steps;
     const hdi_ritz *s = z->ritz + r;
     int32_t i;
-    memset(y, 0, (size_t)z->steps * sizeof *y);
-    for (i = 0; i < m; i++) {
+    memset(y, 0, (size_t)m * sizeof *y);
+    for (i = 0; i < m && z->f_norm[r] > 0; i++) {
         const double *v = s->v + i * m;
         hdi_axpy(z->f_norm[r] * v[0] * hdi_krylov_value(s->mu[i], t / z->g, rate), v, y, m);
     }
@@ -14678,7 +14643,7 @@ static double hdi_rim_norm(const hdi_krylov *z, int32_t r, double s, const doubl
     hdi_krylov_coefficients(z, r, s, z->rate, y);
     hdi_krylov_coefficients(z, r, s, z->rate + 1, dy);
     memset(rest, 0, (size_t)n * sizeof *rest);
-    for (i = 0; i < z->done[r]; i++) {
+    for (i = 0; i < z->steps; i++) {
         hdi_axpy(y[i], w + (int64_t)i * n, rest, n);
         if (dw) hdi_axpy(by * dy[i], dw + (int64_t)i * n, rest, n);
     }
@@ -14695,7 +14660,7 @@ enum { HDI_RIM_SAMPLES = 6 };
  * as an error, too. */
 static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *e) {
     const hdi_rim *g = z->rim;
-    const int32_t m = z->done[r], *row = z->m->lap->row;
+    const int32_t m = z->steps, *row = z->m->lap->row;
     const int64_t size = (int64_t)m * g->n;
     double off = 0, last = 0, *wl, *wb;
     int64_t p;
@@ -14725,16 +14690,13 @@ static double hdi_rim_bound(const hdi_krylov *z, int32_t r, double t, hd_error *
 
 /* ---- what answers are off by ---- */
 
-/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends: the square of the sine of a part of
- * the right angle. What lies between them is below the maximum on them times this number, tuned on meshes.
- * The sine is its Taylor series up to x^9: that of the C library brings 6 KB for large arguments. */
+/* Point k of HDI_KRYLOV_POINTS in (0, 1], which are dense at both ends. What lies between them is below the
+ * maximum on them times this number, tuned on meshes. */
 #define HDI_KRYLOV_BETWEEN 1.2
 
 static double hdi_krylov_point(int32_t k) {
-    const int32_t low = hdi_low32(k, HDI_KRYLOV_POINTS - k);
-    const double x = 1.5707963267948966 * low / (double)HDI_KRYLOV_POINTS, q = x * x;
-    const double s = x * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72))));
-    return low == k ? s * s : 1 - s * s;
+    const double x = k / (double)HDI_KRYLOV_POINTS;
+    return x * x * (3 - 2 * x);
 }
 
 /* (F(a) - F(b))/(a - b), F = hdi_krylov_value, a and b in (0, 1]; fa, fb: F there. Where they are close it is
@@ -14777,7 +14739,7 @@ static void hdi_ritz_gain(const hdi_ritz *s, double tau, double *gain) {
 static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *gain, const double *y,
                                   double rhs_off) {
     const double root = hdi_ratio_root(z->m->lap);
-    const int32_t m = z->done[r];
+    const int32_t m = z->steps;
     double sum = 0, size = 0;
     int32_t j;
     for (j = 0; j < m; j++) {
@@ -14803,14 +14765,13 @@ static double hdi_krylov_rounding(const hdi_krylov *z, int32_t r, const double *
 static void hdi_krylov_judge(hdi_krylov *z, int32_t r, double t, const double *y, double drift,
                               hdi_lane *lane, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    const int32_t m = z->done[r];
     double gain[HDI_KRYLOV_MAX];
     hdi_lane_clear_off(lane);
     lane->off = z->before[r];                    /* K_t makes no error larger */
     lane->rounding = HD_EVIDENCE_ESTIMATED;
-    if (m > 0) {
+    if (z->f_norm[r] > 0) {
         hdi_ritz_gain(z->ritz + r, t / z->g, gain);
-        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * gain[m - 1]);
+        lane->off.solver += z->f_norm[r] * (z->ritz[r].beta * gain[z->steps - 1]);
         lane->off.rounding += hdi_krylov_rounding(z, r, gain, y, lane->rhs_off);
         if (HDI_HAS_LOCAL && z->rim) lane->off.local += hdi_rim_bound(z, r, t, e);
     }
@@ -14827,22 +14788,21 @@ static void hdi_krylov_judge(hdi_krylov *z, int32_t r, double t, const double *y
 #define HDI_KRYLOV_SHARE 0.25
 #define HDI_KRYLOV_FADES 1e-3
 
-/* The error bound of right-hand side r at the worst of the times, in miss_bound: times what is asked for, and
- * relative to |f|_B. It ends early where two times miss already. */
+/* The error bound of right-hand side r at the worst of the times goes into miss, if it is larger: times what
+ * is asked for, and relative to |f|_B where that is missed. It ends early where two times miss already. */
 static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t, int32_t n_times, double tol,
-                                 double miss_bound[2], hd_error *e) {
+                                 double miss[2], hd_error *e) {
     const double before = z->before[r].solver / z->f_norm[r];
     const double rest = z->fixed[r] / (z->f_norm[r] * z->f_norm[r]);
     double room[3 * HDI_KRYLOV_MAX], gain[2];
     hdi_ritz s;
     int32_t q;
-    miss_bound[0] = miss_bound[1] = 0;
     if (!(z->beta[z->steps][r] > 0)) return HD_OK;
     if (hdi_krylov_ritz(z, r, 2, room, &s, e) < 0) return e->status;
-    for (q = 0; q < n_times && (q < 2 || miss_bound[0] <= 1); q++) {
+    for (q = 0; q < n_times && (q < 2 || miss[0] <= 1); q++) {
         /* the last and the first are the worst, as a rule */
         const double tau = (t[q == 0 ? n_times - 1 : q - 1] - z->from) / z->g;
-        double asked = hdi_ritz_size(&s, tau), bound;
+        double asked = hdi_ritz_size(&s, tau), bound, over;
         hdi_ritz_gain(&s, tau, gain);
         bound = s.beta * gain[1];
         asked = tol * sqrt(asked * asked + rest);
@@ -14850,8 +14810,9 @@ static hd_status hdi_krylov_miss(const hdi_krylov *z, int32_t r, const double *t
             const double last = hdi_ritz_size(&s, (z->last - z->from) / z->g);
             asked = HDI_KRYLOV_SHARE * hdi_max(tol * sqrt(last * last + rest), HDI_KRYLOV_FADES * asked);
         } else asked -= before;
-        miss_bound[0] = hdi_max(miss_bound[0], asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0);
-        miss_bound[1] = hdi_max(miss_bound[1], bound);
+        over = asked > 0 ? bound / asked : bound > 0 ? HUGE_VAL : 0;
+        miss[0] = hdi_max(miss[0], over);
+        if (over > 1) miss[1] = hdi_max(miss[1], bound);
     }
     return HD_OK;
 }
@@ -14871,41 +14832,30 @@ static int32_t hdi_krylov_pace(double miss) {
 /* Steps until the bounds of all right-hand sides at all times are below tol times their answers. */
 static hd_status hdi_krylov_run(hdi_krylov *z, const double *t, int32_t n_times, double tol, hd_context *ctx,
                                 hd_error *e) {
-    double best[HDI_WIDE], now[2], miss_all;
-    int32_t r, left = 0, look = 4, best_m[HDI_WIDE], most = HDI_KRYLOV_MAX - 1;
-    hd_status worst = HD_OK;
-    for (r = 0; r < z->k; r++) {
-        left += z->done[r] == 0;
-        best[r] = HUGE_VAL;
-        best_m[r] = 0;
-    }
-    while (left > 0) {
+    const int32_t most = HDI_KRYLOV_MAX - 1;
+    double best = HUGE_VAL, miss[2] = {0, 0};
+    int32_t r, look = 4, best_m = 0;
+    for (r = 0; r < z->k; r++)
+        if (z->f_norm[r] > 0) miss[0] = HUGE_VAL;
+    while (miss[0] > 1) {
         if (hdi_progress(ctx, "solve", hdi_min(0.95, z->steps / 40.0), e) < 0) return e->status;
         if (hdi_krylov_step(z, ctx, e) < 0) return e->status;
         if (z->steps < look && z->steps < most) continue;
-        miss_all = 1;
-        for (r = 0; r < z->k; r++) {
-            if (z->done[r]) continue;
-            if (hdi_krylov_miss(z, r, t, n_times, tol, now, e) < 0) return e->status;
-            if (now[0] < best[r] / 2 && z->steps < most) {
-                best[r] = now[0];
-                best_m[r] = z->steps;
-            } else if (z->steps > best_m[r] + HDI_KRYLOV_PATIENCE || z->steps >= most) {
-                if (now[0] > 1 && now[1] > HDI_KRYLOV_FAILED)
-                    return hdi_fail(e, HD_ERR_NOT_CONVERGED,
-                                    "shift-and-invert Lanczos did not reach the tolerance");
-                if (now[0] > 1) worst = HD_WARN_ACCURACY;
-                now[0] = 1;
-            }
-            if (now[0] <= 1) {
-                left--;
-                if (hdi_krylov_end(z, r, e) < 0) return e->status;
-            }
-            miss_all = hdi_max(miss_all, now[0]);
+        miss[0] = miss[1] = 0;
+        for (r = 0; r < z->k; r++)
+            if (z->f_norm[r] > 0 && hdi_krylov_miss(z, r, t, n_times, tol, miss, e) < 0) return e->status;
+        if (miss[0] < best / 2 && z->steps < most) {
+            best = miss[0];
+            best_m = z->steps;
+        } else if (z->steps > best_m + HDI_KRYLOV_PATIENCE || z->steps >= most) {
+            if (miss[1] <= HDI_KRYLOV_FAILED) break;
+            return hdi_fail(e, HD_ERR_NOT_CONVERGED, "shift-and-invert Lanczos did not reach the tolerance");
         }
-        look = z->steps + hdi_krylov_pace(miss_all);
+        look = z->steps + hdi_krylov_pace(miss[0]);
     }
-    return worst;
+    for (r = 0; r < z->k && e->status >= 0; r++)
+        if (z->f_norm[r] > 0) (void)hdi_krylov_end(z, r, e);
+    return e->status;
 }
 
 /* ==== [24] ground ====
@@ -18249,7 +18199,7 @@ static hd_status hdi_krylov_basis(hdi_heat_call *h, int32_t n, int32_t q0, int32
         return h->e->status;
     z->g = h->m->shift;
     (void)hdi_krylov_run(z, h->times + q0, q1 - q0, heat->opts.tol, heat->ctx, h->e);
-    for (i = 0; i < n; i++) h->rep->iterations += hdi_high32(z->done[i], 0);
+    for (i = 0; i < n; i++) h->rep->iterations += z->f_norm[i] > 0 ? z->steps : 0;
     return h->e->status;
 }
 
@@ -18330,7 +18280,7 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
         const hdi_lane *lane = h->heat->lane + i;
         double size = 0;
         if (lane->skip) continue;
-        if (z->done[i] > 0) size = z->f_norm[i] * hdi_ritz_size(z->ritz + i, (to - z->from) / z->g);
+        if (z->f_norm[i] > 0) size = z->f_norm[i] * hdi_ritz_size(z->ritz + i, (to - z->from) / z->g);
         size = sqrt(size * size + hdi_lane_means_norm2(lane, h->lap)) / 2;
         if (lane->off.solver > heat->opts.tol * size || lane->off.rounding > heat->limit * size) return 0;
     }

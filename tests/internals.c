@@ -890,7 +890,6 @@ static double int_krylov_error(hdi_krylov *z, hdi_lane *lane, int32_t r, double 
     hdi_krylov_sum_task(z, 0, z->m->lap->n_active);
     hdi_krylov_judge(z, r, t, z->y[r], 0, lane + r, &e);
     CHECK(e.status == HD_OK);
-    z->done[r] = 0;
     dense_pair_heat(pair, t, lane[r].rhs, want);
     for (i = 0; i < pair->n; i++) want[i] -= lane[r].u[i];
     return dense_pair_norm(pair, want) / z->f_norm[r];
