@@ -14916,14 +14916,6 @@ static hdi_terms hdi_terms_vertex(int32_t v) {
 static int32_t hdi_terms_at(const hdi_terms *c, int32_t q) { return c->weight ? c->vertex[q] : c->one; }
 static double hdi_terms_weight(const hdi_terms *c, int32_t q) { return c->weight ? c->weight[q] : 1; }
 
-/* The value of a field by vertices at the source. */
-static double hdi_terms_value(const hdi_terms *c, const double *u) {
-    double sum = 0;
-    int32_t q;
-    for (q = 0; q < c->n; q++) sum += hdi_terms_weight(c, q) * u[hdi_terms_at(c, q)];
-    return sum;
-}
-
 /* The component that all of a source is in, or -1. */
 static int32_t hdi_terms_component(const hd_laplacian *lap, const hdi_terms *c) {
     int32_t q, own = -1;
@@ -16341,27 +16333,13 @@ typedef struct hdi_modes {
     hd_spectrum s;               /* in the caller's units; without a shell */
     double *off;                 /* [count] norms of residuals |B^-1 L x - lambda x|_B with their rounding */
     double *bx;                  /* [n count] B x for a full B; made when needed, else NULL */
-    double *one;                 /* [2 n] B 1 by vertices, and what rounding left out of it */
-    int32_t first;               /* pairs before it do not count */
-    double low;                  /* eigenvalues are at least this, but for those that do not count */
+    double low;                  /* eigenvalues are at least this, but for those of constants */
     double off_norm;             /* |B^-1 L X - X Lambda| */
-    double off_gram;             /* |X' B X - 1| */
     int32_t barred;              /* they could not be found; no other try */
 } hdi_modes;
 
-/* Of a field y |Q y|, |X' B y|, |y|, the sum of |r_i| min(t, ..) |c_i|, and s(c); or bounds. */
-typedef struct hdi_share { double left, found, whole, inner, side; } hdi_share;
-
-/* A function of the pairs, exp(-t lambda), 1/lambda or 1/lambda^2, and the factors of its errors. */
-typedef struct hdi_bank {
-    /* [count] exp(-t (theta - low)), and the factors of |c_i| in the two sums */
-    double *weight, *inner_of, *side_of;
-    int32_t first;
-    double depth, root;          /* t low; exp(-t low/2): whole it would underflow before answers do */
-    double cut, mixed, square, twice;    /* exp(-t (a - low)), m, m^2, m t |R| */
-    double inner, side;          /* norms of the factors */
-    double noise, most;          /* of rounding; the largest weight */
-} hdi_bank;
+/* Of a field y |Q y|, |X' B y|, |y|, or bounds. */
+typedef struct hdi_share { double left, found, whole; } hdi_share;
 
 /* Sums over the pairs: a column, a diagonal or distances, for one source and time. */
 typedef struct hdi_spec_sums {
@@ -16369,75 +16347,94 @@ typedef struct hdi_spec_sums {
     int distance, diagonal;      /* squares of differences, or of entries, instead of products */
     int mass;                    /* of B x instead of x */
     int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
-    hdi_bank bank;               /* for one time */
+    /* for one time */
+    int32_t first;               /* the constants are before it */
+    double *weight;              /* [count] exp(-t (theta - low)), or 1/theta^power */
+    double depth, root;          /* t low; exp(-t low/2): whole it would underflow before answers do */
+    double cut, mixed, square;   /* exp(-t (a - low)), m, m^2 */
+    double inner, side;          /* norms of the factors of c in the two sums, with m t |R| */
+    double noise, most;          /* of rounding; the largest weight */
+    /* for one source */
     double *x;                   /* [count] the source in the vectors */
     hdi_share from;              /* of the source */
     double sums_off;             /* rounding of sums over it, relative */
     double *column, *off;        /* [n] */
-    double *inner;               /* [n] of distances the first sum of errors, or NULL */
 } hdi_spec_sums;
 
 /* exp(-t low) x */
-static double hdi_decayed(const hdi_bank *b, double x) { return x * b->root * b->root; }
+static double hdi_decayed(const hdi_spec_sums *a, double x) { return x * a->root * a->root; }
 
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
+
+/* Pairs whose residuals are known; x->off has room. Three times what was measured covers its rounding: 2.8
+ * was seen on graphs and slivers with a tolerance of 1e-12. */
+static void hdi_modes_know(hdi_modes *x) {
+    const hd_spectrum *s = &x->s;
+    const double unit = s->n_constant < s->count ? s->value[s->n_constant] : s->next < HUGE_VAL ? s->next : 0;
+    int32_t q;
+    for (q = 0, x->off_norm = 0; q < s->count; q++) {
+        x->off[q] = 3 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], unit));
+        x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
+    }
+    x->low = hdi_max(0, unit - x->off_norm);
+}
+
+/* Room for the sums. */
+static void hdi_spec_sums_take(hdi_spec_sums *a, const hdi_modes *of, hdi_scope *s) {
+    a->of = of;
+    a->x = HDI_TAKE(s, double, 2 * (uint64_t)of->s.count + 1);
+    if (a->x) a->weight = a->x + of->s.count;
+}
 
 /* Takes up a time, or without one the power. d^2 is made of squares of the weights for d. */
 static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
     const hdi_modes *of = a->of;
     const hd_spectrum *s = &of->s;
-    const int32_t first = a->power ? hdi_low32(s->n_constant, s->count) : of->first;
-    const double low = first < s->count ? hdi_max(0, s->value[first]) : 0;
+    const double low = of->low;
     const double next = s->next < HUGE_VAL ? hdi_max(0, s->next - of->off_norm) : HUGE_VAL;
-    const double gap = hdi_max(0, next - of->low);
-    hdi_bank *b = &a->bank;
-    double *weight = b->weight, *inner = weight + s->count, *side = inner + s->count;
+    const double gap = hdi_max(0, next - low), twice = hdi_bound_times(of->off_norm, t);
     int32_t q;
-    memset(b, 0, sizeof *b);
-    b->weight = weight;
-    b->inner_of = inner;
-    b->side_of = side;
-    b->first = first;
-    b->depth = hdi_bound_times(t, of->low);
-    b->root = exp(-b->depth / 2);
-    b->noise = of->off_gram + (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
-    b->most = !a->power;
-    for (q = first; q < s->count; q++) {
-        const double x = s->value[q], over = hdi_max(0, x - of->low), off = of->off[q];
+    a->first = hdi_low32(s->n_constant, s->count);
+    a->depth = hdi_min(hdi_bound_times(t, low), 1500);   /* beyond, nothing is left */
+    a->root = exp(-a->depth / 2);
+    a->noise = (HDI_NOISE_TERMS + s->count) * DBL_EPSILON;
+    a->most = !a->power;
+    a->inner = a->side = 0;
+    for (q = a->first; q < s->count; q++) {
+        const double x = s->value[q], over = hdi_max(0, x - low), off = of->off[q];
         const double w = !a->power ? exp(-hdi_bound_times(t, over)) : x > 0 ? pow(x, -a->power) : 0;
-        if (a->power) {
-            const double by = (a->power == 1 ? 1 : 1 / x + 1 / low) / low / x;
-            inner[q] = side[q] = x > 0 ? hdi_bound_times(by, off) : HUGE_VAL;
+        if (a->power) {                          /* A^-1 - 1/x, A >= low; and the same of squares */
+            const double by = hdi_bound_times((a->power == 1 ? 1 : 1 / x + hdi_quotient(1, low)) / x,
+                                              hdi_quotient(off, low));
+            a->inner = hdi_pythag(a->inner, x > 0 ? by : HUGE_VAL);
         } else {
-            inner[q] = hdi_bound_times(off, hdi_time_within(t, over));
-            side[q] = hdi_bound_times(w * off, hdi_time_within(t, next - x));
+            a->inner = hdi_pythag(a->inner, hdi_bound_times(off, hdi_time_within(t, over)));
+            a->side = hdi_pythag(a->side, hdi_bound_times(w * off, hdi_time_within(t, next - x)));
         }
-        weight[q] = a->distance && !a->power ? w * w : w;
-        b->most = hdi_max(b->most, w);
-        b->inner = hdi_pythag(b->inner, inner[q]);
-        b->side = hdi_pythag(b->side, side[q]);
+        a->weight[q] = a->distance && !a->power ? w * w : w;
+        a->most = hdi_max(a->most, w);
     }
-    b->cut = !a->power ? exp(-hdi_bound_times(t, gap)) : s->next > 0 ? pow(s->next, -a->power) : HUGE_VAL;
-    b->mixed = a->power ? b->inner : hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
-    b->square = a->power ? b->inner : b->mixed * b->mixed;
-    b->twice = a->power ? 0 : hdi_bound_times(b->mixed, hdi_bound_times(of->off_norm, t));
+    a->cut = !a->power ? exp(-hdi_bound_times(t, gap)) : s->next > 0 ? pow(s->next, -a->power) : HUGE_VAL;
+    a->mixed = hdi_bound_times(of->off_norm, hdi_time_within(t, gap));
+    a->square = a->mixed * a->mixed;
+    a->inner += a->power ? 0 : hdi_bound_times(a->mixed, twice);
+    a->side += a->power ? 0 : hdi_bound_times(a->mixed, twice);
+    if (a->power) a->side = a->mixed = a->square = a->inner;
 }
 
 /* B^-1 e_v, or with mass e_v. */
 static hdi_share hdi_share_of(const hdi_spec_sums *a, int32_t v, int mass) {
     const hd_spectrum *s = &a->of->s;
     const int32_t row = s->lap->row[v];
-    hdi_share y = {0, 0, 0, 0, 0};
+    hdi_share y = {0, 0, 0};
     double whole, left;
     if (row < 0) return y;
     whole = mass ? s->lap->b_diag[row] : hdi_inverse_mass(s->lap, row);
     left = mass ? s->left_mass[v] : s->left[v];
     y.whole = sqrt(whole);
-    y.left = sqrt(left + a->of->off_gram * whole);
-    y.found = sqrt(hdi_max(0, whole - left) + 2 * a->bank.noise * whole);
-    y.inner = hdi_bound_times(a->bank.inner + a->bank.twice, y.found);
-    y.side = hdi_bound_times(a->bank.side + a->bank.twice, y.found);
+    y.left = sqrt(left);
+    y.found = sqrt(hdi_max(0, whole - left) + 2 * a->noise * whole);
     return y;
 }
 
@@ -16445,68 +16442,74 @@ static void hdi_share_add(hdi_share *to, double w, hdi_share y) {
     to->left += fabs(w) * y.left;
     to->found += fabs(w) * y.found;
     to->whole += fabs(w) * y.whole;
-    to->inner += fabs(w) * y.inner;
-    to->side += fabs(w) * y.side;
 }
 
 /* What rounding makes of a value: of sums of such a size, of exp(-t low) whose argument is rounded, and of
  * numbers below the normal ones. */
-static double hdi_bank_rounding(const hdi_bank *b, double size, double value) {
-    const double itself = hdi_bound_times(1 + b->depth, fabs(value));
-    return hdi_decayed(b, b->most * size) + 8 * DBL_EPSILON * itself + 4 * DBL_MIN * DBL_EPSILON;
+static double hdi_spec_rounding(const hdi_spec_sums *a, double size, double value) {
+    const double itself = hdi_bound_times(1 + a->depth, fabs(value));
+    return hdi_decayed(a, a->most * size) + 8 * DBL_EPSILON * itself + 4 * DBL_MIN * DBL_EPSILON;
 }
 
 /* Bounds of the error of a value, an inner product of g with the answer to f. */
-static hdi_parts hdi_bank_off(const hdi_spec_sums *a, const hdi_share *g, const hdi_share *f, double value) {
-    const hdi_bank *b = &a->bank;
+static hdi_parts hdi_share_off(const hdi_spec_sums *a, const hdi_share *g, const hdi_share *f, double value) {
     hdi_parts off = {0, 0, 0, 0};
     if (g->whole == 0 || f->whole == 0) return off;
-    off.rational = hdi_decayed(b, hdi_bound_times(b->cut, g->left * f->left));
-    off.solver = hdi_decayed(b, hdi_bound_times(b->square, g->left * f->left) +
-                                hdi_bound_times(g->side, f->left) + hdi_bound_times(f->side, g->left) +
-                                hdi_bound_times(f->inner, g->found));
-    off.rounding = hdi_bank_rounding(b, 2 * (b->noise + a->sums_off) * g->found * f->whole, value);
+    off.rational = hdi_decayed(a, hdi_bound_times(a->cut, g->left * f->left));
+    off.solver = hdi_decayed(a, hdi_bound_times(a->square, g->left * f->left) +
+                                hdi_bound_times(a->side, g->found * f->left + f->found * g->left) +
+                                hdi_bound_times(a->inner, f->found * g->found));
+    off.rounding = hdi_spec_rounding(a, 2 * (a->noise + a->sums_off) * g->found * f->whole, value);
     return off;
+}
+
+/* Entry v of vector q, or with mass of B times it. */
+static double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t v, int mass) {
+    const int64_t at = (int64_t)q * of->s.n;
+    if (!mass) return of->s.vector[at + v];
+    if (of->bx) return of->bx[at + v];
+    return of->s.lap->row[v] < 0 ? 0 : hdi_spec_mass_row(of->s.lap, of->s.vector + at, of->s.lap->row[v]);
+}
+
+/* A value at vertex v with the part of the constants, which does not decay. *off: plus its rounding. */
+static double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double value, double *off) {
+    int32_t q;
+    for (q = 0; q < a->first && !a->power; q++) {
+        const double y = hdi_spec_entry(a->of, q, v, a->mass && (a->distance || a->diagonal));
+        const double x = a->diagonal ? hdi_spec_entry(a->of, q, v, 0) : a->x[q];
+        const double size = !a->distance ? fabs(y * x) : y != x ? fabs(y) + fabs(x) : 0;
+        value = a->distance ? hdi_pythag(value, y - x) : value + y * x;
+        *off += (HDI_NOISE_TERMS * DBL_EPSILON + a->sums_off) * size;
+    }
+    return value;
 }
 
 /* Bounds of the error of value d at vertex v. */
 static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
-    const hdi_bank *b = &a->bank;
     const hdi_share g = hdi_share_of(a, v, a->mass && a->distance);
     const hdi_share f = a->diagonal ? hdi_share_of(a, v, a->mass) : a->from;
     hdi_parts off = {0, 0, 0, 0}, square;
     hdi_share y = f;
     double beside, all;
-    if (!a->distance) return hdi_bank_off(a, &g, &f, d);
+    if (!a->distance) off = hdi_share_off(a, &g, &f, d);
+    (void)hdi_spec_still(a, v, 0, &off.rounding);
+    if (!a->distance) return off;
     hdi_share_add(&y, 1, g);
-    if (a->inner) y.inner = a->inner[v];
     if (a->power) {
-        square = hdi_bank_off(a, &y, &y, d * d);
+        square = hdi_share_off(a, &y, &y, d * d);
         all = hdi_parts_sum(&square);            /* of d^2 */
         off.rational = all > 0 && hdi_finite(all) ? all / hdi_max(d, sqrt(all)) : all;
         return off;
     }
-    beside = hdi_decayed(b, (b->cut + b->square) * y.left);
+    beside = hdi_decayed(a, (a->cut + a->square) * y.left);
     off.rational = beside > 0 ? beside * (beside / (d + hdi_pythag(d, beside))) : 0;
-    off.solver = hdi_decayed(b, y.inner + hdi_bound_times(b->mixed, y.left));
-    off.rounding = hdi_bank_rounding(b, b->noise * y.whole + a->sums_off * f.whole, d);
+    off.solver = hdi_decayed(a, hdi_bound_times(a->inner, y.found) + hdi_bound_times(a->mixed, y.left));
+    off.rounding += hdi_spec_rounding(a, a->noise * y.whole + a->sums_off * f.whole, d);
     return off;
 }
 
 /* Rows whose sums are made together, so that vectors are read along their columns. */
 enum { HDI_SPEC_ROWS = 512 };
-
-/* n entries of vector q from vertex v on, or with mass of B times it. y [n] */
-static const double *hdi_spec_entries(const hdi_modes *of, int32_t q, int64_t v, int32_t n, int mass,
-                                      double *y) {
-    const hd_laplacian *lap = of->s.lap;
-    const double *x = of->s.vector + (int64_t)q * of->s.n;
-    int32_t i;
-    if (!mass) return x + v;
-    if (of->bx) return of->bx + (int64_t)q * of->s.n + v;
-    for (i = 0; i < n; i++) y[i] = lap->row[v + i] < 0 ? 0 : hdi_spec_mass_row(lap, x, lap->row[v + i]);
-    return y;
-}
 
 /* The values at the vertices, and their bounds where these are wanted. */
 static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
@@ -16517,55 +16520,44 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
     int64_t v;
     int32_t k, q, n;
     for (v = begin; v < end; v += n) {
-        double *HDI_RESTRICT sum = a->column + v;
+        double *HDI_RESTRICT sum = a->column + v, none = 0;
         n = (int32_t)hdi_least(end - v, HDI_SPEC_ROWS);
         memset(sum, 0, (size_t)n * sizeof *sum);
-        if (a->inner) memset(a->inner + v, 0, (size_t)n * sizeof *sum);
-        for (q = a->bank.first; q < of->s.count; q++) {
-            const double *x = of->s.vector + (int64_t)q * of->s.n + v;
-            const double w = a->bank.weight[q], at = a->x[q];
-            const double *other = hdi_spec_entries(of, q, v, n, mass, y);
+        for (q = a->first; q < of->s.count; q++) {
+            const double *x = of->s.vector + (int64_t)q * of->s.n + v, *other = mass ? y : x;
+            const double w = a->weight[q], at = a->x[q];
+            for (k = 0; k < n && mass; k++) y[k] = hdi_spec_entry(of, q, (int32_t)v + k, mass);
             for (k = 0; k < n && a->distance; k++) sum[k] += w * (other[k] - at) * (other[k] - at);
-            for (k = 0; k < n && a->inner; k++)
-                a->inner[v + k] += a->bank.inner_of[q] * fabs(other[k] - at);
             for (k = 0; k < n && a->diagonal; k++) sum[k] += w * x[k] * other[k];
             for (k = 0; k < n && !a->distance && !a->diagonal; k++) sum[k] += w * x[k] * at;
         }
         for (k = 0; k < n; k++) {
-            sum[k] = hdi_decayed(&a->bank, a->distance ? sqrt(sum[k]) : sum[k]);
+            const int32_t at = (int32_t)v + k;
+            sum[k] = hdi_spec_still(a, at, hdi_decayed(a, a->distance ? sqrt(sum[k]) : sum[k]), &none);
             if (a->off) {
-                const hdi_parts off = hdi_spec_off(a, (int32_t)v + k, sum[k]);
-                a->off[v + k] = hdi_parts_sum(&off);
+                const hdi_parts off = hdi_spec_off(a, at, sum[k]);
+                a->off[at] = hdi_parts_sum(&off);
             }
         }
     }
 }
 
-/* The sums of |c_i| of the source, whose entries are there. */
-static void hdi_spec_sum_errors(hdi_spec_sums *a) {
-    int32_t q;
-    a->from.inner = a->from.side = hdi_bound_times(a->bank.twice, a->from.found);
-    for (q = a->bank.first; q < a->of->s.count; q++) {
-        a->from.inner += hdi_bound_times(a->bank.inner_of[q], fabs(a->x[q]));
-        a->from.side += hdi_bound_times(a->bank.side_of[q], fabs(a->x[q]));
-    }
-}
-
 /* The source's entries in the vectors, and its norms, by the triangle inequality. */
 static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
+    const hd_spectrum *s = &a->of->s;
+    const int still = a->distance && !a->mass && from->weight && hdi_terms_component(s->lap, from) >= 0;
     int32_t q, i;
-    double y;
     memset(&a->from, 0, sizeof a->from);
     a->sums_off = hdi_high32(from->n - 1, 0) * DBL_EPSILON;
-    memset(a->x, 0, (size_t)a->of->s.count * sizeof *a->x);
+    memset(a->x, 0, (size_t)s->count * sizeof *a->x);
     for (i = 0; i < from->n; i++) {
         const int32_t v = hdi_terms_at(from, i);
         const double w = hdi_terms_weight(from, i);
-        for (q = a->bank.first; q < a->of->s.count; q++)
-            a->x[q] += w * *hdi_spec_entries(a->of, q, v, 1, a->mass, &y);
+        for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(a->of, q, v, a->mass);
         hdi_share_add(&a->from, w, hdi_share_of(a, v, a->mass));
     }
-    hdi_spec_sum_errors(a);
+    /* weights of sum 1 leave a constant as it is */
+    for (q = 0; q < a->first && still; q++) a->x[q] = hdi_spec_entry(a->of, q, hdi_terms_at(from, 0), 0);
 }
 
 /* Vertices without mass in K_t. Without a time, other components and those without a row are beyond. */
@@ -16596,22 +16588,6 @@ typedef struct hdi_spec_ask {
     double *out, *bound;         /* columns ld apart; bound or NULL */
     size_t ld;
 } hdi_spec_ask;
-
-/* Pairs of the caller's, whose residuals are known. off [count] */
-static hdi_modes hdi_modes_of(const hd_spectrum *s, double *off) {
-    const int32_t first = hdi_low32(s->n_constant, s->count);
-    const double low = first < s->count ? s->value[first] : s->next;
-    hdi_modes x;
-    int32_t q;
-    memset(&x, 0, sizeof x);
-    x.s = *s;
-    x.off = off;
-    for (q = 0; q < s->count; q++) {
-        off[q] = 2 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], low));
-        x.off_norm = hypot(x.off_norm, off[q]);
-    }
-    return x;
-}
 
 /* Checks and completes a call. */
 static hd_status hdi_spec_sums_check(hdi_spec_ask *a, hdi_spec_sums *x, const hd_spectrum *s, hd_error *e) {
@@ -16655,12 +16631,13 @@ static HDI_COLD hd_status hdi_spec_sums_ask(const hd_spectrum *s, hdi_spec_ask a
     if (hdi_spec_sums_check(&a, &x, s, c.e) < 0) return c.e->status;
     scope = hdi_scope_begin(c.ctx, c.e);
     memset(&none, 0, sizeof none);
-    x.x = HDI_TAKE(&scope, double, 5 * (uint64_t)s->count + 1);
+    memset(&of, 0, sizeof of);
+    of.s = *s;
+    of.off = HDI_TAKE(&scope, double, (uint64_t)s->count + 1);
+    hdi_spec_sums_take(&x, &of, &scope);
     if (!a.diagonal && x.x) terms = hdi_terms_all(a.sources, s->lap, a.distance, &scope);
     if (c.e->status < 0) return hdi_scope_end(&scope);
-    x.bank.weight = x.x + s->count;
-    of = hdi_modes_of(s, x.x + 4 * (size_t)s->count);
-    x.of = &of;
+    hdi_modes_know(&of);
     for (q = 0; q < (a.diagonal ? 1 : a.sources->count); q++) {
         const hdi_terms *from = a.diagonal ? &none : terms + q;
         for (m = 0; m < a.n_times; m++) {
@@ -16693,7 +16670,6 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     hdi_free(ctx, x->s.left);
     hdi_free(ctx, x->off);
     hdi_free(ctx, x->bx);
-    hdi_free(ctx, x->one);
     memset(x, 0, sizeof *x);
 }
 
@@ -19008,87 +18984,20 @@ static HDI_COLD hd_status hdi_heat_engine(hdi_heat_call *h) {
 /* With a larger bound by poles, relative to the largest value, eigenpairs are asked for help. */
 #define HDI_MODES_HELP 1e-6
 #define HDI_MODES_REASON "at such a t few eigenpairs are left: answers are sums over them"
-/* Vectors further from orthonormal than this are refused: one may be there twice. */
-#define HDI_MODES_ORTHO 1e-6
 /* From this t low on values are among the smallest doubles. */
 #define HDI_MODES_FADED 650
-
-/* The norm of the rounding of B^-1 L x - lambda x, x by rows, L's rows that sum to zero included. */
-static double hdi_modes_noise(const hd_laplacian *lap, const double *x, double value) {
-    double sum = 0;
-    int32_t i;
-    for (i = 0; i < lap->n_active; i++) {
-        const double c = (hdi_row_terms(lap, i) + HDI_NOISE_TERMS) * DBL_EPSILON;
-        const double row = hdi_row_size(lap, i, 1, value, x);
-        sum = hdi_pythag(sum, c * (row / sqrt(lap->b_diag[i])));   /* not by squares, which may underflow */
-    }
-    return hdi_ratio_root(lap) * sum;
-}
-
-/* out = B x, by vertices. */
-static void hdi_modes_apply(const hd_laplacian *lap, const double *x, double *out) {
-    int32_t i;
-    memset(out, 0, (size_t)lap->n * sizeof *out);
-    for (i = 0; i < lap->n_active; i++) out[lap->vertex[i]] = hdi_spec_mass_row(lap, x, i);
-}
-
-/* |X' B X - 1| in the norm of Frobenius. bx [n] */
-static double hdi_modes_gram(const hd_laplacian *lap, const hd_spectrum *s, double *bx) {
-    double sum = 0;
-    int32_t i, j;
-    for (j = 0; j < s->count; j++) {
-        hdi_modes_apply(lap, s->vector + (int64_t)j * s->n, bx);
-        for (i = 0; i <= j; i++) {
-            const double g = hdi_dot(s->vector + (int64_t)i * s->n, bx, s->n) - (i == j);
-            sum += (i == j ? 1 : 2) * g * g;
-        }
-    }
-    return sqrt(sum);
-}
-
-/* What bounds need of eigenpairs that are there. */
-static hd_status hdi_modes_measure(hd_heat *heat, hd_error *e) {
-    hdi_modes *x = &heat->modes;
-    const hd_spectrum *s = &x->s;
-    const hd_laplacian *lap = heat->source;
-    const uint64_t n = (uint64_t)s->n;
-    const int32_t first = s->n_constant;
-    int64_t p;
-    int32_t q;
-    x->off = HDI_NEW(heat->ctx, double, s->count + 1, e);
-    if (x->off) x->one = HDI_NEW(heat->ctx, double, 2 * n, e);
-    if (e->status < 0) return e->status;
-    x->first = first;
-    x->off_gram = hdi_modes_gram(lap, s, x->one);
-    for (q = 0, x->off_norm = 0; q < s->count; q++) {
-        const double value = s->value[q], unit = first < s->count ? s->value[first] : 0;
-        x->off[q] = hdi_ratio_root(lap) * s->residual[q] * hdi_max(value, unit);
-        hdi_gather(lap, s->vector + (int64_t)q * s->n, x->one);
-        x->off[q] += hdi_modes_noise(lap, x->one, fabs(value));
-        x->off[q] += x->off_gram * fabs(s->value[s->count - 1]);
-        if (q >= first) x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
-    }
-    x->low = first < s->count ? s->value[first] : s->next < HUGE_VAL ? s->next : 0;
-    x->low = hdi_max(0, x->low - x->off_norm);
-    memset(x->one, 0, 2 * (size_t)n * sizeof *x->one);
-    for (q = 0; q < lap->n_active; q++) {        /* B 1 in two doubles each */
-        double *one = x->one + lap->vertex[q];
-        hdi_sum sum = {0, 0};
-        for (p = lap->L.row_ptr[q]; p < lap->L.row_ptr[q + 1] && lap->B; p++) hdi_sum_add(&sum, lap->B[p]);
-        *one = lap->B ? sum.high + sum.low : lap->mass[q];
-        if (lap->B) one[lap->n] = sum.high - *one + sum.low;
-    }
-    return HD_OK;
-}
 
 /* B times the vectors. */
 static hd_status hdi_modes_mass(hd_heat *heat, hd_error *e) {
     hdi_modes *x = &heat->modes;
-    int64_t at, size = (int64_t)x->s.n * x->s.count;
+    const int64_t size = (int64_t)x->s.n * x->s.count;
+    double *bx;
+    int64_t at;
     if (x->bx || !heat->source->B) return HD_OK;
-    x->bx = HDI_NEW(heat->ctx, double, size, e);
-    for (at = 0; at < size && x->bx; at += x->s.n)
-        hdi_modes_apply(heat->source, x->s.vector + at, x->bx + at);
+    bx = HDI_NEW(heat->ctx, double, size, e);
+    for (at = 0; at < size && bx; at++)
+        bx[at] = hdi_spec_entry(x, (int32_t)(at / x->s.n), (int32_t)(at % x->s.n), 1);
+    x->bx = bx;
     return e->status;
 }
 
@@ -19162,8 +19071,11 @@ static int hdi_modes_find(hd_heat *heat, int32_t count, hd_error *e) {
     x->s.lap = lap;
     x->s.context = heat->ctx;
     if (hdi_spec_run(&heat->elim, count, HUGE_VAL, HDI_MODES_RESIDUAL, &x->s, e) >= 0 && x->s.proven &&
-        x->s.n_constant == (lap->conserves ? lap->n_components : 0) && hdi_modes_measure(heat, e) >= 0 &&
-        x->off_gram <= HDI_MODES_ORTHO) return 1;
+        x->s.n_constant == (lap->conserves ? lap->n_components : 0)) {
+        x->off = HDI_NEW(heat->ctx, double, x->s.count + 1, e);
+        if (x->off) hdi_modes_know(x);
+        if (x->off) return 1;
+    }
     hdi_modes_free(x, heat->ctx);
     x->barred = e->status != HD_ERR_MEMORY && e->status != HD_ERR_MEMORY_LIMIT &&
                 e->status != HD_ERR_CANCELLED && e->status != HD_ERR_ARGUMENT;   /* of progress */
@@ -19353,42 +19265,14 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
 
 /* Sums over the pairs that are there, at the time under way. Arrays are in s. */
 static hd_status hdi_late_make(hdi_spec_sums *a, hdi_heat_call *h, int distance, int mass, hdi_scope *s) {
-    hd_heat *heat = h->heat;
-    const uint64_t count = (uint64_t)heat->modes.s.count;
-    hdi_modes_tell(heat, h->rep);
+    hdi_modes_tell(h->heat, h->rep);
     memset(a, 0, sizeof *a);
-    a->of = &heat->modes;
     a->distance = distance;
     a->mass = mass;
-    if (mass && hdi_modes_mass(heat, h->e) < 0) return h->e->status;
-    a->x = HDI_TAKE(s, double, 4 * count + 1);
-    if (!a->x) return h->e->status;
-    a->bank.weight = a->x + count;
-    hdi_spec_sum_at(a, h->ask.t[h->now]);
-    return HD_OK;
-}
-
-/* The bounds of a lane's answer. most: norms of vertices. found, kept: |c|^2 of field and answer. */
-static void hdi_fading_bound(const hdi_heat_call *h, hdi_spec_sums *a, const hdi_share *most, double found,
-                             double kept, hdi_lane *lane) {
-    const hdi_bank *b = &a->bank;
-    hdi_share *f = &a->from;
-    const double terms = hdi_item_fields(h->ask.item) ? (double)h->lap->n_active / 2 : 0;
-    const double f2 = lane->f_norm * lane->f_norm, rounding = b->noise + terms * DBL_EPSILON;
-    const double sums = hdi_decayed(b, 2 * hdi_ratio_root(h->lap) * rounding * lane->f_norm + lane->rhs_off);
-    f->whole = lane->f_norm;
-    f->found = sqrt(found);
-    hdi_spec_sum_errors(a);
-    f->left = sqrt(hdi_max(0, f2 - (1 - a->of->off_gram) * found) + rounding * f2);
-    hdi_lane_clear_off(lane);
-    lane->u_norm = hdi_decayed(b, sqrt(kept));
-    lane->off.rational = hdi_decayed(b, b->cut * f->left);
-    lane->off.solver = hdi_decayed(b, f->inner + b->mixed * f->left);
-    lane->off.rounding = sums + 8 * (1 + hdi_min(b->depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * lane->u_norm;
-    lane->off_value = hdi_bank_off(a, most, f, 0);
-    lane->off_value.rounding = most->found * lane->off.rounding;
-    lane->off_m = lane->off;
-    lane->rounding = HD_EVIDENCE_ESTIMATED;
+    if (mass && hdi_modes_mass(h->heat, h->e) < 0) return h->e->status;
+    hdi_spec_sums_take(a, &h->heat->modes, s);
+    if (h->e->status >= 0) hdi_spec_sum_at(a, h->ask.t[h->now]);
+    return h->e->status;
 }
 
 /* Sums over the pairs for columns, and the largest norms of vertices. */
@@ -19397,17 +19281,20 @@ typedef struct hdi_fading_sums {
     hdi_share most;
 } hdi_fading_sums;
 
-/* The answer of a lane from the pairs. */
+/* The answer of a lane from the pairs, and its bounds. found, kept: |c|^2 of field and answer. */
 static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
     hdi_fading_sums *x = (hdi_fading_sums *)arg;
     hdi_spec_sums *a = &x->a;
+    hdi_share *f = &a->from;
     hdi_lane *lane = h->heat->lane;
     const hd_laplacian *lap = h->lap;
+    const double terms = hdi_item_fields(h->ask.item) ? (double)lap->n_active / 2 : 0;
+    const double f2 = lane->f_norm * lane->f_norm, rounding = a->noise + terms * DBL_EPSILON;
     double found = 0, kept = 0;
     int32_t q, i;
     (void)n;
     for (q = 0; q < a->of->s.count && !lane->skip; q++) {
-        const double *v = a->of->s.vector + (int64_t)q * a->of->s.n, w = a->bank.weight[q];
+        const double *v = a->of->s.vector + (int64_t)q * a->of->s.n, w = a->weight[q];
         double c = 0;
         for (i = 0; i < lap->n_active; i++) c += lane->rhs[i] * v[lap->vertex[i]];
         a->x[q] = c;
@@ -19417,7 +19304,19 @@ static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
     if (lane->skip) return;
     hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, a);
     hdi_gather(lap, a->column, lane->u);
-    hdi_fading_bound(h, a, &x->most, found, kept, lane);
+    f->whole = lane->f_norm;
+    f->found = sqrt(found);
+    f->left = sqrt(hdi_max(0, f2 - found) + rounding * f2);
+    hdi_lane_clear_off(lane);
+    lane->u_norm = hdi_decayed(a, sqrt(kept));
+    lane->off.rational = hdi_decayed(a, a->cut * f->left);
+    lane->off.solver = hdi_decayed(a, a->inner * f->found + a->mixed * f->left);
+    lane->off.rounding = hdi_decayed(a, 2 * hdi_ratio_root(lap) * rounding * lane->f_norm + lane->rhs_off) +
+                         8 * (1 + a->depth) * DBL_EPSILON * lane->u_norm;
+    lane->off_value = hdi_share_off(a, &x->most, f, 0);
+    lane->off_value.rounding = x->most.found * lane->off.rounding;
+    lane->off_m = lane->off;
+    lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
 
 /* The request at one time from the pairs that are there. */
@@ -19438,7 +19337,6 @@ static hd_status hdi_fading_answer(hdi_task *task) {
             x.most.left = hdi_max(x.most.left, g.left);
             x.most.found = hdi_max(x.most.found, g.found);
             x.most.whole = hdi_max(x.most.whole, g.whole);
-            x.most.side = hdi_max(x.most.side, g.side);
         }
         if (hdi_heat_items(h, hdi_fading_solve, &x) >= 0 && h->ask.list)
             hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
@@ -20527,8 +20425,10 @@ static hd_status hdi_fading_diagonal(hdi_heat_call *h, int mass, double *out) {
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_spec_sums a;
     int32_t v;
+    hdi_terms none;
+    memset(&none, 0, sizeof none);
     if (hdi_late_make(&a, h, 0, mass, &s) < 0) return hdi_scope_end(&s);
-    memset(a.x, 0, (size_t)a.of->s.count * sizeof *a.x);
+    hdi_spec_sum_from(&a, &none);
     a.diagonal = 1;
     a.column = out;
     hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, &a);
@@ -21261,8 +21161,8 @@ typedef struct hdi_metric {
     hdi_column_parts *off;       /* [group][in.count] */
     double *work;                /* [n], or of grounded solves */
     hd_report *local;            /* f is by patches, with errors f.g, columns by balls; NULL: not so */
-    struct hdi_mode_sum *modes;  /* eigenpairs answer, and nothing above is there; NULL: not so */
     const int32_t *column;       /* [in.count] which of h->ask.t each function is for; set before answers */
+    hdi_spec_sums *pairs;        /* eigenpairs answer, and nothing above is there; NULL: not so */
     hd_report *one;              /* by times; NULL: all is for the report of the call */
 } hdi_metric;
 
@@ -21436,75 +21336,17 @@ static hd_status hdi_metric_make(hdi_heat_call *h, const hdi_distance_row *kind,
  *     d_t(x,y)^2 = sum_i exp(-2 t lambda_i) (x_i(x) - x_i(y))^2 = |K_t B^-1 (e_x - e_y)|^2
  * does not cancel, however small it is; its bounds are in [25]. Constants drop out within a component. */
 
-/* Distances between a source and all vertices at one time. */
-typedef struct hdi_mode_sum {
-    hdi_spec_sums sums;
-    const hd_laplacian *lap;
-    int32_t own;                 /* the component of the source, -1: none, or several */
-    double share[HDI_MODES_FIRST];   /* what the constant of each component takes of it */
-    double constant_off;         /* how much rounding of the sums over the source changes that of constants */
-    double at, rest;             /* B 1 there, in two doubles */
-} hdi_mode_sum;
-
-static void hdi_mode_sum_from(hdi_mode_sum *a, hdi_terms source) {
-    const int weighted = a->sums.mass;
-    const double *one = a->sums.of->one;
-    int32_t q;
-    hdi_spec_sum_from(&a->sums, &source);
-    a->own = hdi_terms_component(a->lap, &source);
-    a->at = hdi_terms_value(&source, one);
-    a->rest = hdi_terms_value(&source, one + a->lap->n);
-    memset(a->share, 0, sizeof a->share);
-    a->constant_off = 0;
-    for (q = 0; q < source.n && a->sums.bank.first > 0; q++) {
-        const int32_t v = hdi_terms_at(&source, q), row = a->lap->row[v];
-        const double w = hdi_terms_weight(&source, q), by = weighted ? w * one[v] : w;
-        if (row < 0) continue;
-        a->share[a->lap->component[row]] += by;
-        if (source.weight && (weighted || a->own < 0))
-            a->constant_off += (source.n + 1) * DBL_EPSILON * fabs(by) /
-                sqrt(a->lap->component_mass[a->lap->component[row]]);
-    }
-    if (a->own >= 0 && !weighted) a->share[a->own] = 1;
-}
-
-/* The part of d that does not decay: that of the constants. Within a component of the source B 1 is compared
- * in two doubles. */
-static double hdi_modes_constant(const hdi_mode_sum *a, int32_t v) {
-    const hd_laplacian *lap = a->lap;
-    const int32_t row = lap->row[v], own = row < 0 ? -1 : lap->component[row], mass = a->sums.mass;
-    const double *one = a->sums.of->one, *rest = one + lap->n;
-    double sum = 0;
-    int32_t c;
-    if (own >= 0 && own == a->own && !mass) return 0;
-    for (c = 0; c < lap->n_components && a->sums.bank.first > 0; c++) {
-        const double by = c == own ? (mass ? one[v] : 1) : 0;
-        const double off = own >= 0 && own == a->own ? (c == own ? a->at - one[v] + (a->rest - rest[v]) : 0)
-                                                     : a->share[c] - by;
-        sum = hdi_pythag(sum, off / sqrt(lap->component_mass[c]));
-    }
-    return sum;
-}
-
 /* d from the source to vertices [begin, end), which are all or one; the account goes to the ledger. */
-static void hdi_mode_sum_run(hdi_mode_sum *a, hdi_terms source, int32_t begin, int32_t end, double *d,
-                             hdi_ledger *ledger, hd_report *rep) {
-    const int32_t same = source.weight ? -1 : source.one;
+static void hdi_spec_distances(hdi_spec_sums *a, const hdi_terms *source, int32_t begin, int32_t end,
+                               double *d, hdi_ledger *ledger, hd_report *rep) {
     int32_t v;
-    hdi_mode_sum_from(a, source);
-    a->sums.column = d;
-    if (begin > 0) hdi_spec_sum_task(&a->sums, begin, end);
-    else hdi_parallel_ranges(a->sums.of->s.context, end, 1024, hdi_spec_sum_task, &a->sums);
-    if (same >= 0) d[same] = 0;
-    for (v = begin; v < end; v++) {              /* d is that of the part that decays */
-        const double still = v == same ? 0 : hdi_modes_constant(a, v);
-        hdi_parts part = hdi_spec_off(&a->sums, v, still > 0 ? 0 : d[v]);
-        if (v == same) continue;
-        part.rounding += a->constant_off;
-        if (still > 0) {
-            d[v] = hdi_pythag(still, d[v]);
-            part.rounding += 8 * (1 + hdi_min(a->sums.bank.depth, HDI_EQUAL_BEYOND)) * DBL_EPSILON * d[v];
-        }
+    hdi_spec_sum_from(a, source);
+    a->column = d;
+    if (begin > 0) hdi_spec_sum_task(a, begin, end);
+    else hdi_parallel_ranges(a->of->s.context, end, 1024, hdi_spec_sum_task, a);
+    for (v = begin; v < end; v++) {
+        const hdi_parts part = hdi_spec_off(a, v, d[v]);
+        if (!source->weight && v == source->one) continue;
         rep->n_lost += d[v] < 10 * hdi_parts_sum(&part);
         hdi_ledger_note(ledger, d[v], part);
     }
@@ -21599,7 +21441,7 @@ static hd_status hdi_metric_solve_ball(const hdi_metric *x, const hdi_terms *sou
 static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, int32_t k) {
     hdi_heat_call c;
     int32_t i, q;
-    if (x->modes) return HD_OK;
+    if (x->pairs) return HD_OK;
     if (x->local) return hdi_metric_solve_ball(x, source);
     memset(x->off, 0, (size_t)k * (size_t)hdi_high32(x->in.count, 1) * sizeof *x->off);
     if (x->kind->power > 0 || x->equal) return hdi_metric_solve_plain(x, source, k);
@@ -21745,7 +21587,7 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
     hdi_ledger ledger = hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
                                          HD_EVIDENCE_MEASURED, 1);
-    if (HDI_HAS_MODES && x->modes) return hdi_modes_ledger();
+    if (HDI_HAS_MODES && x->pairs) return hdi_modes_ledger();
     if (x->local) {
         ledger.evidence.rational = x->local->evidence_rational;
         ledger.evidence.solver = x->local->evidence_solver;
@@ -21758,8 +21600,9 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
 static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep) {
     hdi_ledger ledger = hdi_metric_ledger(x);
-    if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, *s, 0, x->modes->lap->n, out, &ledger, rep);
-    else hdi_metric_differences(x, s, i, 0, x->h->heat->source->n, out, rep, &ledger);
+    const int32_t n = x->h->heat->source->n;
+    if (HDI_HAS_MODES && x->pairs) hdi_spec_distances(x->pairs, s, 0, n, out, &ledger, rep);
+    else hdi_metric_differences(x, s, i, 0, n, out, rep, &ledger);
     hdi_ledger_close(&ledger, rep);
 }
 
@@ -21781,18 +21624,14 @@ static hd_status hdi_distance_by_pairs(hdi_task *task) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_mode_sum sum;
+    hdi_spec_sums sums;
     hdi_metric x;
     memset(&x, 0, sizeof x);
-    memset(&sum, 0, sizeof sum);
     x.h = h;
     x.group = 1;
     x.column = &h->now;
-    x.modes = &sum;
-    sum.lap = h->heat->source;
-    if (hdi_late_make(&sum.sums, h, 1, to->kind->mass > 0, &s) >= 0)
-        sum.sums.inner = HDI_TAKE(&s, double, sum.lap->n);
-    if (h->e->status >= 0) to->answer(to, &x);
+    x.pairs = &sums;
+    if (hdi_late_make(&sums, h, 1, to->kind->mass > 0, &s) >= 0) to->answer(to, &x);
     return hdi_scope_end(&s);
 }
 
@@ -21897,7 +21736,7 @@ static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x) {
     int32_t r, k, i, q;
     for (r = 0; r < to->k; r += k) {
         k = hdi_low32(to->k - r, x->group);
-        if ((x->modes && hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) < 0) ||
+        if ((x->pairs && hdi_progress(h->heat->ctx, "solve", (double)r / to->k, h->e) < 0) ||
             hdi_metric_solve(x, to->source + r, k) < 0) break;
         for (q = 0; q < hdi_high32(x->in.count, 1); q++) {
             const int32_t at = x->column[q];
@@ -22034,7 +21873,7 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
         const int32_t j = to->j[q];
         out[q] = 0;
         if (source.one == j) continue;
-        if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, source, j, j + 1, d, &ledger, h->rep);
+        if (HDI_HAS_MODES && x->pairs) hdi_spec_distances(x->pairs, &source, j, j + 1, d, &ledger, h->rep);
         else if (source.one == from || hdi_metric_solve(x, &source, 1) >= 0)
             hdi_metric_differences(x, &source, 0, j, j + 1, d, h->rep, &ledger);
         from = source.one;
