@@ -16673,10 +16673,6 @@ static void hdi_modes_free(hdi_modes *x, hd_context *ctx) {
     memset(x, 0, sizeof *x);
 }
 
-/* What a call does without after it exceeded the byte limit: first what is optional, which is eigenpairs and
- * poles that times share; then all methods but the direct one with the fewest poles. */
-enum { HDI_SPARE_OPTIONS = 1, HDI_SPARE_POLES };
-
 struct hd_heat {
     hd_context *ctx;
     const hd_laplacian *source;  /* the caller's */
@@ -16687,8 +16683,7 @@ struct hd_heat {
     int32_t iterations_asked, poles_asked;
     /* the status warns where rounding relative to the answer is above this: tol, or HDI_ROUNDING_LIMIT */
     double limit;
-    uint64_t no_factors_limit;   /* the byte limit into which factors did not fit; 0: none */
-    int32_t spare;               /* of a call that exceeded the byte limit: an hdi_spare */
+    int32_t spare;               /* at the byte limit: few poles, none shared by times, and no eigenpairs */
     hd_rational *sets;           /* [n_sets] of the caller's; opts.rational is the first */
     int32_t n_sets;
     hdi_elim elim;               /* to factorise */
@@ -16802,11 +16797,6 @@ static hd_status hdi_heat_iterative(hd_heat *heat, hd_error *e) {
     fam->noise_work = fam->noise + n;
     hdi_noise_weights(fam->lap, 1, 0, fam->noise_l, fam->noise_work);
     return e->status;
-}
-
-/* Did factors not fit the byte limit that holds? */
-static int hdi_factors_barred(const hd_heat *heat) {
-    return heat->no_factors_limit && heat->no_factors_limit == heat->ctx->byte_limit;
 }
 
 /* Frees all factors; the analyses stay. */
@@ -17085,7 +17075,7 @@ typedef struct hdi_heat_call {
     const int32_t *time_column;  /* which of ask.t each is; NULL: in order */
     hd_method method;
     double least;                /* seconds of the best method, while their costs are compared */
-    int32_t not_local;           /* balls have been tried, and did not serve */
+    int32_t barred;              /* bits of methods that have been tried, and failed */
     int32_t rate;                /* the derivative in t is asked for: methods give t times that */
     hd_solver solver;
     const hd_laplacian *lap;     /* the copy of the pair that the method works on; the caller's for t = 0 */
@@ -17601,8 +17591,7 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     const hd_heat *heat = h->heat;
     const int asked = h->set || heat->opts.rational || heat->opts.degree || hdi_exacting(heat);
     int32_t degree = h->method == HD_METHOD_DIRECT ? HDI_DEGREE_DIRECT : 10;
-    if (!asked && hdi_heat_kind(h) == HD_POLES_UNIFORM && heat->spare != HDI_SPARE_POLES)
-        degree = hdi_heat_degree(h);
+    if (!asked && !heat->spare && hdi_heat_kind(h) == HD_POLES_UNIFORM) degree = hdi_heat_degree(h);
     return h->e->status < 0 ? h->e->status : hdi_heat_set_of(h, degree, set);
 }
 
@@ -18413,35 +18402,25 @@ static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
 }
 
 /* Adds the rows that edges lead to from those that are there: all that are less than `hops` edges away, and
- * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
- * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
- * nearer than at first are followed again. */
+ * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that the
+ * neighbour which led to it came from: edges turn too often for their lengths to be added up. */
 static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t most, hd_error *e) {
     const hd_laplacian *lap = l->source;
-    int32_t i, first = 0, next, level = 0, level_end = l->n;
+    int32_t i, level = 0, level_end = l->n;
     int64_t p;
-    for (; first < l->n && l->n <= most; first = next) {
-        next = INT32_MAX;
-        for (i = first; i < l->n && l->n <= most; i++) {
-            hdi_reached at = l->at[i];
-            const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
-            if (i == level_end) {
-                level++;
-                level_end = l->n;
-            }
-            for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
-                const int32_t there = l->place[lap->L.col[p]] - 1;
-                if (there >= 0 && l->at[there].way == 0) continue;
-                if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
-                at.row = lap->L.col[p];
-                at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
-                if (there < 0 && (at.way <= reach || level < hops)) {
-                    if (hdi_local_put(l, at, e) < 0) return e->status;
-                } else if (there >= 0 && l->at[there].way > at.way) {
-                    l->at[there] = at;
-                    next = there < i ? hdi_low32(next, there) : next;
-                }
-            }
+    for (i = 0; i < l->n && l->n <= most; i++) {
+        hdi_reached at = l->at[i];
+        const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
+        if (i == level_end) {
+            level++;
+            level_end = l->n;
+        }
+        for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
+            at.row = lap->L.col[p];
+            if (l->place[at.row]) continue;
+            if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
+            at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
+            if ((at.way <= reach || level < hops) && hdi_local_put(l, at, e) < 0) return e->status;
         }
     }
     return e->status;
@@ -18661,7 +18640,7 @@ static double hdi_local_more(const hd_heat *heat, double reach, int32_t tries, d
 
 /* The radius of a ball of this reach where edges are so long and the root of t is `root`. Without places ways
  * go over edges, and are longer than straight ones by the first number. */
-#define HDI_LOCAL_TURNS 1.36
+#define HDI_LOCAL_TURNS 1.2
 
 static double hdi_local_radius(const hd_heat *heat, double edge, double root, double reach) {
     const double turns = heat->source->xyz ? 1 : HDI_LOCAL_TURNS;
@@ -18814,7 +18793,7 @@ enum { HDI_LOCAL_FROM = 4096 };
 static int hdi_local_can(const hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const int asked = heat->opts.method == HD_METHOD_LOCAL;      /* then there is no retreat to the fields */
-    return HDI_HAS_LOCAL && !h->not_local && !h->set && !h->n_off && !heat->iterations_asked &&
+    return HDI_HAS_LOCAL && !h->set && !h->n_off && !heat->iterations_asked &&
            (!heat->poles_asked || (HDI_HAS_POLE_FACTORS && heat->opts.rational)) &&
            h->times[0] > 0 && heat->source->b_ratio > 0 &&
            (asked || !hdi_item_fields(h->ask.item) ||
@@ -18877,39 +18856,36 @@ static void hdi_heat_costs(hdi_heat_call *h, hd_cost *by) {
     h->least = HUGE_VAL;
     memset(by, 0, (HD_METHOD_LOCAL + 1) * sizeof *by);
     for (q = HD_METHOD_ITERATIVE; q <= last && h->e->status >= 0; q++) {
-        if (hdi_engines[q].cost) hdi_engines[q].cost(h, by + q);
+        if (hdi_engines[q].cost && !(h->barred >> q & 1)) hdi_engines[q].cost(h, by + q);
         by[q].seconds += HDI_FRESH_BYTE * by[q].bytes;
         if (by[q].possible) h->least = hdi_min(h->least, by[q].seconds);
     }
 }
 
-/* Picks the cheapest method that fits the byte limit by the model, or else iterations. Analyses are made only
- * where a factorisation could cost least. */
+/* Picks the cheapest method by the model, of those that fit the byte limit if there are any. Analyses are
+ * made only where a factorisation could cost least. */
 static hd_status hdi_heat_pick_by_cost(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    /* without iterations there is no retreat */
-    const double room = HDI_HAS_ITERATIVE ? hdi_bytes_left(heat->ctx) : HUGE_VAL;
+    const double room = hdi_bytes_left(heat->ctx);
     hdi_elim *m = NULL;
     hd_cost by[HD_METHOD_LOCAL + 1];
-    double least, cost;
-    int32_t q;
+    int32_t q, fits, best;
     do {
         if (m && hdi_heat_analysed_in(heat, m, h->e) < 0) return h->e->status;
         hdi_heat_costs(h, by);
         if (h->e->status < 0) return h->e->status;
-        h->method = HD_METHOD_ITERATIVE;
-        for (least = cost = HUGE_VAL, q = HD_METHOD_LOCAL; q >= HD_METHOD_ITERATIVE; q--) {
-            if (!by[q].possible) continue;
-            least = hdi_min(least, by[q].seconds);
-            if ((q > HD_METHOD_ITERATIVE && by[q].bytes > room) || by[q].seconds >= cost) continue;
+        h->method = HD_METHOD_AUTO;
+        for (best = 0, q = HD_METHOD_LOCAL; q >= HD_METHOD_ITERATIVE; q--) {
+            fits = by[q].possible * (1 + (q == HD_METHOD_ITERATIVE || by[q].bytes <= room));
+            if (fits < best || !fits || (fits == best && by[q].seconds >= by[h->method].seconds)) continue;
             h->method = (hd_method)q;
-            cost = by[q].seconds;
+            best = fits;
         }
         m = hdi_heat_analysis(h);
     } while (h->method != HD_METHOD_ITERATIVE && h->method != HD_METHOD_LOCAL && !m->ctx);
     h->rep->reason = hdi_engines[h->method].reason;
-    if (h->method == HD_METHOD_ITERATIVE && cost > least)
-        h->rep->reason = "factors would not fit the byte limit";
+    if (h->barred || by[h->method].seconds > h->least)
+        h->rep->reason = "what would take less fails, or does not fit the byte limit";
     if (h->method == HD_METHOD_DIRECT && hdi_heat_at_hand(h))
         h->rep->reason = "the factors of the poles are there from calls before";
     return HD_OK;
@@ -18920,10 +18896,8 @@ static HDI_COLD hd_status hdi_heat_pick(hdi_heat_call *h) {
     const hd_heat *heat = h->heat;
     const struct { int holds; hd_method method; const char *reason; } rule[] = {
         {heat->opts.method != HD_METHOD_AUTO, heat->opts.method, "asked for"},
-        {heat->spare == HDI_SPARE_POLES, HD_METHOD_DIRECT, "iterations, which would take less, fail"},
         {h->degree > 0, HD_METHOD_DIRECT, "the bound of fewer poles is too large"},
         {heat->iterations_asked, HD_METHOD_ITERATIVE, "a solver or preconditioner is asked for"},
-        {hdi_factors_barred(heat), HD_METHOD_ITERATIVE, "factors did not fit the byte limit"},
         {!HDI_HAS_DIRECT, HD_METHOD_ITERATIVE, "this build has iterations only"}
     };
     size_t q;
@@ -19256,8 +19230,7 @@ static void hdi_fading_task(hdi_task *task, hdi_heat_call *h) {
     double span;
     memset(task, 0, sizeof *task);
     task->h = h;
-    if (!HDI_HAS_MODES || heat->source->conserves || h->rate || hdi_factors_barred(heat) ||
-        !hdi_modes_allowed(heat)) return;
+    if (!HDI_HAS_MODES || heat->source->conserves || h->rate || !hdi_modes_allowed(heat)) return;
     task->serves = HDI_MODES_FIRST;
     span = hdi_modes_span(heat);
     task->depth = hdi_max(0, log(span * span / (HDI_FADING_LOW * hdi_modes_tol(heat))));
@@ -19419,38 +19392,30 @@ static hd_status hdi_heat_chosen(hdi_task *task) {
     return h->e->status;
 }
 
-/* After a failure the call begins anew: without local; at the byte limit without what is optional; then by
- * iterations, without factors. Where iterations fail, or direct is asked for, the fewest poles are left.
- * Returns 0 where there is no other way. */
+/* After a failure the call begins anew: at the byte limit without what is optional or kept, then without the
+ * method that failed, if another one may be taken. Returns 0 where there is no other way. */
 static int hdi_heat_retreat(const hdi_task *task) {
     hdi_heat_call *h = task->h;
     hd_heat *heat = h->heat;
-    const int over = hdi_over_limit(heat->ctx, h->e), automatic = heat->opts.method == HD_METHOD_AUTO;
-    const int failed = over || h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED;
-    const int columns = HDI_HAS_DIRECT && task->poles == hdi_heat_chosen;
-    if (heat->spare == HDI_SPARE_POLES) return 0;
+    const int over = hdi_over_limit(heat->ctx, h->e), tried = h->barred | 1 << h->method;
+    const int failed = over || ((h->method == HD_METHOD_LOCAL || h->method == HD_METHOD_ITERATIVE) &&
+                                (h->e->status == HD_ERR_BREAKDOWN || h->e->status == HD_ERR_NOT_CONVERGED));
+    const int can = HDI_HAS_ITERATIVE << HD_METHOD_ITERATIVE | HDI_HAS_POLE_FACTORS << HD_METHOD_DIRECT |
+                    !heat->poles_asked << HD_METHOD_KRYLOV;
     /* fields may have been overwritten by their answers */
-    if (h->ask.F && h->ask.F == h->ask.U && h->batch > 0) return 0;
-    if (HDI_HAS_LOCAL && columns && automatic && failed &&
-        (h->method == HD_METHOD_LOCAL || (over && heat->part))) {
-        hdi_local_free(heat);
-        h->not_local = 1;
-    } else if (over && !heat->spare && (!columns || task->serves)) {
+    if (!failed || (h->ask.F && h->ask.F == h->ask.U && h->batch > 0)) return 0;
+    if (over && !heat->spare && heat->opts.method < HD_METHOD_KRYLOV) {
         hdi_heat_shed(heat);
-        heat->spare = HDI_SPARE_OPTIONS;
-    } else if (HDI_HAS_ITERATIVE && columns && automatic && over && (heat->elim.ctx || heat->few.ctx) &&
-               !h->degree) {
-        hdi_heat_free_factors(heat);
-        heat->no_factors_limit = heat->ctx->byte_limit;
-    } else if (HDI_HAS_POLE_FACTORS && columns && h->t > 0 &&
-               (automatic ? failed && h->method == HD_METHOD_ITERATIVE && !heat->iterations_asked
-                          : over && h->method == HD_METHOD_DIRECT)) {
-        hdi_heat_shed(heat);
-        hdi_heat_free_iterative(heat);
-        heat->spare = HDI_SPARE_POLES;
+        heat->spare = 1;
+    } else if (HDI_HAS_DIRECT && task->poles == hdi_heat_chosen && heat->opts.method == HD_METHOD_AUTO &&
+               !heat->iterations_asked && !h->degree && can & ~tried && tried != h->barred) {
+        if (over) hdi_heat_free_factors(heat);
+        if (over) hdi_heat_free_iterative(heat);
+        h->barred = tried;
     } else {
         return 0;
     }
+    if (HDI_HAS_LOCAL) hdi_local_free(heat);
     hdi_task_at(h, 0);
     return 1;
 }
