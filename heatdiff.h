@@ -20481,7 +20481,7 @@ static hd_status hdi_sets_check(const hd_rational *sets, int32_t count, hd_error
 /* Random functions; times where they are taken, over t; these and an integral. */
 enum { HDI_PATCH_PROBES = HDI_LANES_BATCH, HDI_PATCH_TIMES = 3, HDI_PATCH_ROWS = 4 };
 static const double hdi_patch_time[HDI_PATCH_TIMES] = {1, 0.75, 0.5};
-enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH_FROM = 20000 };
+enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FROM = 20000 };
 
 /* The sum of squares of eight normal deviates is below a tenth of its mean once in 1,300 times. */
 #define HDI_PATCH_SAFETY 10
@@ -20492,14 +20492,10 @@ enum { HDI_PATCH_STEPS = 32, HDI_PATCH_LEAST = 256, HDI_PATCH_FEW = 4, HDI_PATCH
 /* What a row costs besides the factor, in its flops, on a patch and on the mesh: by runs of 22K to 160K. */
 #define HDI_PATCH_ROW 1800
 #define HDI_WHOLE_ROW 500
-/* Smaller pieces are taken where they need less than this part of the work. */
-#define HDI_PATCH_GAIN 0.9
+/* Pieces are halved until a patch has so many times as many rows; work hardly depends on it from 1.5 to 3. */
+#define HDI_PATCH_WIDE 1.6
 /* Bytes of a patch for each number of its real factor, as measured: so many, and as many for each pack. */
 #define HDI_PATCH_BYTES 90
-/* Where a piece did not fit after all, they are taken as so many times as many from then on. */
-#define HDI_PATCH_MORE 1.05
-/* The part of the rows that would fit that pieces have: others of the region may need more. */
-#define HDI_PATCH_SURE 0.97
 
 #define HDI_PATCHES_PAY "heat reaches a small part of the mesh"
 #define HDI_PATCHES_FIT "factors would not fit the byte limit"
@@ -20508,8 +20504,7 @@ typedef struct hdi_patches {
     const hdi_diagonals *to;
     hdi_local *local;
     int32_t n, *row, *mark, *queue;  /* rows by pieces [n]; work [n_active], [n] */
-    int32_t done;                /* pieces that are answered */
-    int32_t best, core;          /* rows of a piece: for least work; where they fit as well */
+    int32_t pieces, done;        /* to begin with; answered */
     double left;                 /* bytes for a patch */
     hdi_fill fill;               /* of the factor of a patch, as guessed */
     double each;                 /* bytes of a patch for each number of its real factor, as measured */
@@ -20562,48 +20557,30 @@ static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int3
     return hdi_local_grow(x->local, HDI_PATCH_REACH * radius, hops, most, h->e);
 }
 
-/* How many rows a piece can have for factors of its patch to fit, by one that was found: margins stay as
- * wide. */
-static double hdi_patch_fits(const hdi_patches *x, int32_t rows) {
-    const hd_csr *L = &x->to->task.h->heat->source->L;
-    const double n = x->local->n, stored = hdi_fill_guess(n, n * (double)L->nnz / L->n_rows).stored;
-    const double side = sqrt(x->left / (x->each * stored) * n) - sqrt(n) + sqrt(rows);
-    return side > 0 ? side * side : 0;
-}
-
-static int32_t hdi_patch_pieces(const hdi_patches *x, int32_t rows) {
-    return hdi_high32(1, (int32_t)ceil((double)rows / x->core - 0.05));
-}
-
-/* Halves a piece until factors of its patch fit, and further while that makes less work. Returns the flops of
- * all patches less those of the whole mesh. */
+/* Halves a piece until factors of its patch fit, and much of the patch is margin. Pieces have up to twice as
+ * many rows, where these fit. Returns the flops of all patches less those of the whole mesh. */
 static HDI_COLD double hdi_patch_cut(hdi_patches *x) {
-    hdi_heat_call *h = x->to->task.h;
-    const int32_t n = h->heat->source->n_active;
-    const double wide = (double)h->heat->source->L.nnz / n;
-    double least = HUGE_VAL;
+    const hd_csr *L = &x->to->task.h->heat->source->L;
+    const double all = L->n_rows, wide = (double)L->nnz / all;
+    const hdi_fill whole = hdi_fill_guess(all, (double)L->nnz);
+    double core, n, margin, most;
     int32_t begin = 0, end = x->n, middle, level;
-    for (level = 0; hdi_patch_find(x, begin, end, INT32_MAX) >= 0; level++) {
-        const hdi_fill f = hdi_fill_guess(x->local->n, x->local->n * wide);
-        const double core = end - begin, most = hdi_patch_fits(x, end - begin);
-        const double cost = (f.flops + HDI_PATCH_ROW * (double)x->local->n) * x->n / core;
-        if (least == HUGE_VAL) x->fill = f;
-        if (most > core && cost < HDI_PATCH_GAIN * least) {
-            /* where the limit makes pieces small they have as many rows as fit */
-            x->best = (int32_t)hdi_max(core, hdi_min(least < HUGE_VAL ? 0 : most, 1.9 * core));
-            least = cost;
-            x->fill = f;
-        } else if (least < HUGE_VAL) {
-            break;
-        }
-        if (end - begin < 2 * HDI_PATCH_LEAST) break;
+    for (level = 0;; level++) {
+        if (hdi_patch_find(x, begin, end, INT32_MAX) < 0) return 0;
+        core = end - begin;
+        n = x->local->n;
+        margin = sqrt(n) - sqrt(core);
+        most = hdi_max(0, sqrt(x->left / (x->each * whole.stored) * all) - margin);
+        if (core < 2 * HDI_PATCH_LEAST || (most * most > core && n > HDI_PATCH_WIDE * core)) break;
         middle = hdi_patch_halve(x, begin, end, 2);
         if (level / 2 % 2) end = middle;         /* pieces inside the mesh have margins all around */
         else begin = middle;
     }
-    if (least == HUGE_VAL) x->best = end - begin;
-    x->core = x->best;
-    return least - hdi_fill_guess(n, n * wide).flops - HDI_WHOLE_ROW * (double)n;
+    core = hdi_max(core, hdi_min(most * most, 2 * core));
+    n = hdi_min(all, (margin + sqrt(core)) * (margin + sqrt(core)));
+    x->fill = hdi_fill_guess(n, n * wide);
+    x->pieces = hdi_high32(1, (int32_t)ceil(x->n / core - 0.05));
+    return x->pieces * (x->fill.flops + HDI_PATCH_ROW * n) - whole.flops - HDI_WHOLE_ROW * all;
 }
 
 /* Random functions on the rim, as functionals that k_s applies to: with c = L w and c' = B w on the patch's
@@ -20886,7 +20863,7 @@ static hd_status hdi_patches_open(hdi_patches *x, const hdi_diagonals *to, doubl
     memset(x, 0, sizeof *x);
     x->to = to;
     x->n = to->rows ? to->n_rows : n;
-    x->best = x->core = x->n;
+    x->pieces = 1;
     x->wanted = HDI_LOCAL_SHARE * h->heat->opts.tol;
     x->reason = h->heat->opts.method == HD_METHOD_LOCAL ? "asked for" : HDI_PATCHES_PAY;
     x->reach = hdi_local_reach(h->heat, h->heat->n_sets);
@@ -20913,52 +20890,24 @@ static int hdi_patches_pay(hdi_patches *x, const hdi_diagonals *to, double facto
     return (hdi_patch_cut(x) < 0 || asked) && h->e->status >= 0;
 }
 
-/* How many rows a piece has in a region that is a few pieces large. The first piece has to fit: if it does
- * not, there are more of them, up to twice as many. */
-static hd_status hdi_patch_size(hdi_patches *x, int32_t begin, int32_t end) {
-    const int32_t few = hdi_patch_pieces(x, end - begin);
-    int32_t pieces = few, last = 0, middle, k;
-    while (last < pieces) {
-        double most;
-        for (middle = end, k = pieces; k > 1; k /= 2) middle = hdi_patch_halve(x, begin, middle, k);
-        if (hdi_patch_find(x, begin, middle, INT32_MAX) < 0) break;
-        most = HDI_PATCH_SURE * hdi_patch_fits(x, middle - begin);
-        last = pieces;
-        if (middle - begin > most)
-            pieces = (int32_t)hdi_min(2 * few, hdi_max(pieces + 1, (end - begin) / hdi_max(most, 1)));
-    }
-    x->core = (end - begin - 1) / pieces + 1;
-    return x->to->task.h->e->status;
-}
-
-/* Rows from begin to end, in pieces. known: x->core is theirs. One that exceeds the byte limit is halved. */
-static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, int known) {
+/* Rows from begin to end, in so many pieces. One that exceeds the byte limit is halved. */
+static hd_status hdi_patches_range(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
     hdi_heat_call *h = x->to->task.h;
-    int32_t pieces, middle;
-    if (!known) x->core = x->best;
-    pieces = hdi_patch_pieces(x, end - begin);
-    if (pieces > 1 && pieces <= HDI_PATCH_FEW && !known) {
-        if (hdi_patch_size(x, begin, end) < 0) return h->e->status;
-        pieces = hdi_patch_pieces(x, end - begin);
-        known = 1;
-    }
+    int32_t middle;
     if (pieces == 1) {
         if (hdi_progress(h->heat->ctx, "invert", (double)begin / x->n, h->e) < 0 ||
             hdi_patch_find(x, begin, end, INT32_MAX) < 0) return h->e->status;
-        if (end - begin < 2 * HDI_PATCH_LEAST || end - begin < hdi_patch_fits(x, end - begin)) {
-            if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
-            if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
-            hdi_error_clear(h->e);
-            hdi_local_free(h->heat);
-            x->each *= HDI_PATCH_MORE;
-            x->local = hdi_local_open(h->heat, h->e);
-            if (h->e->status < 0) return h->e->status;
-        }
+        if (hdi_patch_run(x, begin, end) >= 0) return HD_OK;
+        if (!hdi_over_limit(h->heat->ctx, h->e) || end - begin < 2 * HDI_PATCH_LEAST) return h->e->status;
+        hdi_error_clear(h->e);
+        hdi_local_free(h->heat);
+        x->local = hdi_local_open(h->heat, h->e);
+        if (h->e->status < 0) return h->e->status;
         pieces = 2;
     }
     middle = hdi_patch_halve(x, begin, end, pieces);
-    return hdi_patches_range(x, begin, middle, known) < 0 ? h->e->status
-                                                           : hdi_patches_range(x, middle, end, known);
+    if (hdi_patches_range(x, begin, middle, pieces / 2) < 0) return h->e->status;
+    return hdi_patches_range(x, middle, end, pieces - pieces / 2);
 }
 
 /* Diagonals and traces by patches. */
@@ -20970,7 +20919,7 @@ static hd_status hdi_patches_run(hdi_patches *x) {
     memset(h->rep, 0, sizeof *h->rep);
     h->relative = 1;
     h->rep->reason = x->reason;
-    (void)hdi_patches_range(x, 0, x->n, 0);
+    (void)hdi_patches_range(x, 0, x->n, x->pieces);
     hdi_local_free(h->heat);
     h->rep->n_patches = x->done;
     for (q = 0; q < hdi_diagonals_count(h) && to->D && h->e->status >= 0; q++)
@@ -22205,7 +22154,7 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     hdi_diagonals to;
     hdi_patches p;
     hd_rational set;
-    double pieces;
+    double patches;
     int pays;
     if (!hdi_patches_can(heat)) return h->e->status;
     memset(&to, 0, sizeof to);
@@ -22217,9 +22166,9 @@ static hd_status hdi_estimate_patches(const hdi_estimate *x) {
     heat->opts.tol = tol;
     if (h->e->status < 0) return h->e->status;
     hdi_local_free(heat);
-    pieces = ceil((double)p.n / p.core) * h->n_times;
-    hdi_fill_cost(p.fill, HDI_PACK, pieces * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
-    c->seconds += pieces * 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n / HDI_RATE_PACK;
+    patches = (double)p.pieces * h->n_times;
+    hdi_fill_cost(p.fill, HDI_PACK, patches * (1 + HDI_INVERT) * hdi_set_packs(&set), 0, 0, c);
+    c->seconds += patches * 16 * (1 + HDI_INVERT) * HDI_PATCH_ROW * p.fill.n / HDI_RATE_PACK;
     c->possible = 1;
     c->bytes = p.each * p.fill.stored + x->held;
     c->bytes_most = hdi_max(c->bytes, hdi_min(2 * c->bytes, hdi_bytes_left(heat->ctx)));

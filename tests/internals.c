@@ -1492,7 +1492,7 @@ static void int_patches_means(void) {
         to.Z = &Z;
         to.bound = &bound;
         CHECK(hdi_patches_open(&x, &to, 1) >= 0);
-        x.best = x.n / 3;
+        x.pieces = 3;
         CHECK(hdi_patches_run(&x) >= 0 && h.rep->n_patches > 2 && h.rep->n_touched == lap->n);
         CHECK_MSG(fabs(Z - 1) <= bound && bound < 1e-9, "%s: 1 and %g, bound %g", specs[k], Z - 1, bound);
         for (v = 0; v < lap->n; v++) CHECK(fabs(D[v] - lap->mass[lap->row[v]] / lap->component_mass[0]) < 1e-9 * D[v]);

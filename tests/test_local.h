@@ -966,8 +966,8 @@ static void test_local(void) {
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 fem", HD_DISTANCE_WEIGHTED, "method=local");
     loc_distances("inert/70/0 vor+held", HD_DISTANCE_CLASSICAL, "method=local");
     if (!CASES_FEW) loc_distances("flat/72/72/0.3 vor", HD_DISTANCE_WEIGHTED, "");
-    loc_distance_column("bumpy/4/1 vor");
-    loc_distance_column("bumpy/4/1 fem");
+    loc_distance_column("flat/30/30/0.3 vor");
+    loc_distance_column("flat/30/30/0.3 fem");
     loc_refused();
     loc_filters("bumpy/5/1 vor", 1);
     if (!CASES_FEW) loc_filters("bumpy/5/1 fem", 0.5);
