@@ -19408,7 +19408,7 @@ static int hdi_heat_retreat(const hdi_task *task) {
         hdi_heat_shed(heat);
         heat->spare = 1;
     } else if (HDI_HAS_DIRECT && task->poles == hdi_heat_chosen && heat->opts.method == HD_METHOD_AUTO &&
-               !heat->iterations_asked && !h->degree && can & ~tried && tried != h->barred) {
+               h->t > 0 && !heat->iterations_asked && !h->degree && can & ~tried && tried != h->barred) {
         if (over) hdi_heat_free_factors(heat);
         if (over) hdi_heat_free_iterative(heat);
         h->barred = tried;
