@@ -12846,7 +12846,7 @@ static HDI_NOINLINE double hdi_quotient(double a, double b) { return a == 0 ? 0 
 /* A bound. Of one that is not a number nothing is known. */
 static double hdi_bound_of(double off) { return hdi_nan(off) ? HUGE_VAL : off; }
 
-/* Notes a value and the bound on its error. */
+/* Notes a value and the bound on its error. One that is not finite fails the call. */
 static void hdi_ledger_note(hdi_ledger *l, double value, hdi_parts off) {
     const double size = fabs(value);
     double all;
@@ -21375,7 +21375,7 @@ static hd_status hdi_metric_solve(const hdi_metric *x, const hdi_terms *source, 
 /* f, g and spread of an end of a distance, and what rounding of its diagonal is relative to; off is a bound
  * on the error of f besides. Of a vertex they are those of the diagonals: by patches g is infinite and off
  * says all, of means all but f are 0. Of several f and g are taken from their columns u and g; spread is a
- * bound, and so is g where its column is NULL. */
+ * bound, and so is g where its column is NULL; off has what size would. */
 typedef struct hdi_metric_end { double f, g, spread, size, off; } hdi_metric_end;
 
 /* That of row r; negative: there is none. */
@@ -21448,8 +21448,8 @@ static hdi_parts hdi_parts_share(const hd_report *rep, double error) {
     return sum > 0 && hdi_finite(sum) && hdi_finite(error) ? hdi_parts_scale(error / sum, whole) : rounding;
 }
 
-/* What a kind makes of f: d^2 between two ends, over the square of x->root; off gets bounds on its errors.
- * f_ab, g_ab: of the column of a, whose errors are column. */
+/* What a kind makes of f: d^2 between two ends, over the square of x->root, which is set where f is made; off
+ * gets bounds on its errors. f_ab, g_ab: of the column of a, whose errors are column. */
 static double hdi_metric_square(const hdi_metric *x, const hdi_metric_end *a, const hdi_metric_end *b,
                                 double f_ab, const double *g_ab, const hdi_column_parts *column,
                                 hdi_parts *off) {
