@@ -4278,12 +4278,15 @@ static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
 static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
     int64_t c;
     for (c = 0; c < hdi_triple(m); c++) {
-        const double *side = len + c / 3 * 3, x = len[c];
-        const double all = fabs(side[0]) + fabs(side[1]) + fabs(side[2]);
+        const double *side = len + c / 3 * 3;
+        double x = len[c];
         const char *bad = !hdi_finite(x) ? "a length is not finite" : x < 0 ? "a length is negative"
-            : x != 0 && !hdi_in_range(x) ? "a length is not 0 and outside 1e-100 .. 1e100"
-            : !(x > all / 2 * (1 + HDI_LENGTH_ROUNDING)) ? NULL
-            : "a side of a face is longer than the two others together";
+            : x != 0 && !hdi_in_range(x) ? "a length is not 0 and outside 1e-100 .. 1e100" : NULL;
+        if (!bad && c % 3 == 2) {                /* all three are fine */
+            x = hdi_max(x, hdi_max(side[0], side[1]));
+            if (x > (side[0] + side[1] + side[2]) / 2 * (1 + HDI_LENGTH_ROUNDING))
+                bad = "a side of a face is longer than the two others together";
+        }
         if (bad)
             return hdi_fail_face(e, hdi_finite(x) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE, bad, c / 3, -1, x);
     }
@@ -5778,12 +5781,49 @@ static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *
     return e;
 }
 
+/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What is
+ * shared with vertices that are held counts as well, in its place of the sum. */
+static void hdi_rows_mirror(const hdi_rows *x, int32_t v, int32_t end) {
+    hd_laplacian *lap = x->lap;
+    const int64_t *ptr = lap->L.row_ptr;
+    double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
+    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT before = x->work;
+    int64_t p, q, diagonal;
+    for (; v < end; v++) {
+        const int32_t i = lap->row[v];
+        diagonal = i < 0 ? 0 : ptr[i + 1] - x->later[v] - 1;
+        for (p = x->first[v]; lap->n_held > 0 && p < x->first[v + 1];) {
+            const hdi_edge e = hdi_rows_edge(x, v, &p);
+            const int32_t j = e.to == v ? -1 : lap->row[e.to];
+            if (i >= 0 && e.to != v) L[diagonal] -= e.L;
+            if (j >= 0) L[ptr[j + 1] - x->later[e.to] - 1] -= e.L;
+            if (j >= 0 && i < 0) lap->holding->leak[e.to] |= e.L != 0;
+        }
+        if (i < 0) continue;
+        for (sum = 0, p = ptr[i]; p < diagonal; p++) sum -= L[p];
+        for (p = diagonal + 1; p < ptr[i + 1]; p++) {
+            q = ptr[col[p]] + before[col[p]]++;
+            col[q] = i;
+            L[q] = L[p];
+            if (B) B[q] = B[p];
+            sum -= L[p];
+        }
+        if (lap->n_held == 0) L[diagonal] = sum;
+        if (!B || lap->n_held == 0) continue;
+        for (lap->mass[i] = 0, p = ptr[i]; p < ptr[i + 1]; p++) lap->mass[i] += B[p];
+    }
+}
+
 /* Counts the edges of vertices, and fills their rows, where they have one, behind the diagonal. A column
- * without a row is not written. An edge from the vertex to itself has no weight, and is twice in its B. */
-static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, int32_t last, hdi_tally *t) {
+ * without a row is not written. An edge from the vertex to itself has no weight, and is twice in its B. One
+ * thread that does all copies rows while they are in its caches. */
+static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_rows *x = (const hdi_rows *)arg;
     const hdi_mesh *mesh = &x->mesh;
     hd_laplacian *lap = x->lap;
-    for (; v < last; v++) {
+    hdi_tally tally = hdi_tally_none, *t = &tally;
+    int32_t v;
+    for (v = (int32_t)begin; v < end; v++) {
         const int32_t i = lap ? lap->row[v] : -1;
         int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
         double own = 0;
@@ -5820,48 +5860,8 @@ static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, int32_t last,
         if (lap->B) lap->B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + own;
         if (lap->holding) lap->holding->leak[v] = (char)leaks;
     }
-}
-
-/* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What is
- * shared with vertices that are held counts as well, in its place of the sum. */
-static void hdi_rows_mirror(const hdi_rows *x, int32_t v, int32_t end) {
-    hd_laplacian *lap = x->lap;
-    const int64_t *ptr = lap->L.row_ptr;
-    double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
-    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT before = x->work;
-    int64_t p, q, diagonal;
-    for (; v < end; v++) {
-        const int32_t i = lap->row[v];
-        diagonal = i < 0 ? 0 : ptr[i + 1] - x->later[v] - 1;
-        for (p = x->first[v]; lap->n_held > 0 && p < x->first[v + 1];) {
-            const hdi_edge e = hdi_rows_edge(x, v, &p);
-            const int32_t j = e.to == v ? -1 : lap->row[e.to];
-            if (i >= 0 && e.to != v) L[diagonal] -= e.L;
-            if (j >= 0) L[ptr[j + 1] - x->later[e.to] - 1] -= e.L;
-            if (j >= 0 && i < 0) lap->holding->leak[e.to] |= e.L != 0;
-        }
-        if (i < 0) continue;
-        for (sum = 0, p = ptr[i]; p < diagonal; p++) sum -= L[p];
-        for (p = diagonal + 1; p < ptr[i + 1]; p++) {
-            q = ptr[col[p]] + before[col[p]]++;
-            col[q] = i;
-            L[q] = L[p];
-            if (B) B[q] = B[p];
-            sum -= L[p];
-        }
-        if (lap->n_held == 0) L[diagonal] = sum;
-        if (!B || lap->n_held == 0) continue;
-        for (lap->mass[i] = 0, p = ptr[i]; p < ptr[i + 1]; p++) lap->mass[i] += B[p];
-    }
-}
-
-/* One thread that does all copies rows while they are in its caches. */
-static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_rows *x = (const hdi_rows *)arg;
-    hdi_tally tally = hdi_tally_none;
-    hdi_rows_fill(x, (int32_t)begin, (int32_t)end, &tally);
-    if (x->lap && x->together) hdi_rows_mirror(x, (int32_t)begin, (int32_t)end);
-    x->mesh.tally[begin / hdi_block_size(x->mesh.n)] = tally;
+    if (lap && x->together) hdi_rows_mirror(x, (int32_t)begin, (int32_t)end);
+    mesh->tally[begin / hdi_block_size(mesh->n)] = tally;
 }
 
 /* Masses that the faces give the rows. */
