@@ -3771,29 +3771,25 @@ static hd_status hdi_csr_check_rows(const hd_csr *a, hd_error *e) {
  * file. */
 #define HDI_SYMMETRY_TOL 1e-12
 
-/* Also symmetry. A missing entry is a zero. Of several pairs that differ the first one is told. */
+/* Also symmetry. A missing entry is a zero. */
 static hd_status hdi_csr_check(const hd_csr *a, hd_error *e) {
-    int32_t i, row = INT32_MAX, col = 0;
-    double value = 0;
+    int32_t i;
     int64_t p, q;
     if (hdi_csr_check_rows(a, e) < 0) return e->status;
     if (a->n_rows != a->n_cols)
         return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not square", a->n_rows, a->n_cols, 0);
     for (i = 0; i < a->n_rows; i++) {
         for (p = a->row_ptr[i]; p < a->row_ptr[i + 1]; p++) {
-            const int32_t j = a->col[p], lo = hdi_low32(i, j), hi = hdi_high32(i, j);
+            const int32_t j = a->col[p];
             double x = a->val ? a->val[p] : 1, y;
             q = hdi_csr_find(a, j, i);
             y = q < 0 ? 0 : a->val ? a->val[q] : 1;
-            if (fabs(x - y) <= HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)) || lo > row) continue;
-            if (lo == row && hi >= col) continue;
-            row = lo;
-            col = hi;
-            value = i == lo ? x - y : y - x;
+            if (fabs(x - y) > HDI_SYMMETRY_TOL * hdi_max(fabs(x), fabs(y)))
+                return hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", hdi_low32(i, j),
+                                    hdi_high32(i, j), i < j ? x - y : y - x);
         }
     }
-    return row < INT32_MAX ? hdi_fail_row(e, HD_ERR_NOT_SYMMETRIC, "matrix: not symmetric", row, col, value)
-                           : HD_OK;
+    return HD_OK;
 }
 
 /* How far ahead of a sweep over a matrix its entries are asked for, once a row. The processor's own
@@ -3886,16 +3882,11 @@ static hd_status hdi_coordinates_check(const double *xyz, int32_t n, int queries
     int64_t i;
     for (i = 0; i < hdi_triple(n); i++) {
         const int lost = !hdi_finite(xyz[i]);
+        const char *text = lost ? "a coordinate is not finite" : "a coordinate is beyond 1e100";
+        const hd_status st = lost ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT;
         if (hdi_bits(xyz[i]) << 1 <= hdi_bits(HDI_RANGE) << 1) continue;
-        hdi_fail_face(e, lost ? HD_ERR_NOT_FINITE : HD_ERR_ARGUMENT, "a coordinate ", -1, i / 3, xyz[i]);
-        if (queries) {
-            e->row = e->vertex;
-            e->column = i % 3;
-            e->vertex = -1;
-        }
-        hdi_text_add(e, queries ? "of a query " : "");
-        hdi_text_add(e, lost ? "is not finite" : "is beyond 1e100");
-        return e->status;
+        return queries ? hdi_fail_row(e, st, text, i / 3, i % 3, xyz[i])
+                       : hdi_fail_face(e, st, text, -1, i / 3, xyz[i]);
     }
     return HD_OK;
 }
@@ -3905,12 +3896,12 @@ static hd_status hdi_points_check(const double *xyz, int32_t n, hd_error *e) {
     double size = 0;
     int64_t i, at = 0;
     if (hdi_coordinates_check(xyz, n, 0, e) < 0) return e->status;
-    for (i = 0; i < hdi_triple(n); i++) {
+    for (i = 0; i < hdi_triple(n) && size < 1 / HDI_RANGE; i++) {
         const double away = fabs(xyz[i] - xyz[i % 3]);
         if (away > size) at = i / 3;
         size = hdi_max(size, away);
     }
-    if (size == 0 || hdi_in_range(size)) return HD_OK;
+    if (size == 0 || size >= 1 / HDI_RANGE) return HD_OK;
     return hdi_fail_face(e, HD_ERR_ARGUMENT, "all points are within 1e-100 of each other", -1, at, size);
 }
 
@@ -4200,13 +4191,16 @@ typedef struct hdi_mesh {
     int32_t *odd;       /* [m] how many of its copies have their corners in odd order */
     int32_t n, m;
     double lambda;      /* of polygons */
+    int repeats;        /* 1: faces may repeat others, which are to be found when they are measured */
     double *area;       /* [m] of polygons: length of the vector area; 0, or negative for good: left out */
     double *cot;        /* [corners] of triangles: cotangents */
     double *g;          /* [3 corners] of polygons: (corner before - corner after) / (2 sqrt(area)) */
     double *w;          /* [2 corners] of polygons: see hdi_poly_frame; of those with three corners not set */
     int32_t *of;        /* [corners] of polygons: the face of a corner */
-    int64_t *at;        /* [n + 1] if listed: corners at each vertex, of faces that had an area, ascending */
+    int32_t *at;        /* [n + 1] if listed: corners at each vertex, ascending */
     int32_t *corner;    /* [corners] */
+    int32_t most;       /* corners at a vertex, at least 1 */
+    uint64_t *link;     /* [pairs of corners] work, then the links of room [12] */
     struct hdi_tally *tally;    /* [HDI_BLOCKS_MOST] work */
 } hdi_mesh;
 
@@ -4284,19 +4278,18 @@ static hd_status hdi_mesh_check(const hdi_mesh *mesh, hd_error *e) {
 
 static hd_status hdi_lengths_check(const double *len, int32_t m, hd_error *e) {
     int64_t c;
-    for (c = 0; c < 2 * hdi_triple(m); c++) {    /* the sides of a face, then against each other */
-        const double *side = len + 3 * (c / 6), x = side[c % 3];
-        const char *bad = NULL;
-        if (c % 6 >= 3) {
+    for (c = 0; c < hdi_triple(m); c++) {
+        const double *side = len + c / 3 * 3;
+        double x = len[c];
+        const char *bad = !hdi_finite(x) ? "a length is not finite" : x < 0 ? "a length is negative"
+            : x != 0 && !hdi_in_range(x) ? "a length is not 0 and outside 1e-100 .. 1e100" : NULL;
+        if (!bad && c % 3 == 2) {                /* all three are fine */
+            x = hdi_max(x, hdi_max(side[0], side[1]));
             if (x > (side[0] + side[1] + side[2]) / 2 * (1 + HDI_LENGTH_ROUNDING))
                 bad = "a side of a face is longer than the two others together";
-        } else if (!hdi_finite(x)) {
-            bad = "a length is not finite";
-        } else if (x != 0 && !hdi_in_range(x)) {
-            bad = x < 0 ? "a length is negative" : "a length is not 0 and outside 1e-100 .. 1e100";
         }
         if (bad)
-            return hdi_fail_face(e, hdi_finite(x) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE, bad, c / 6, -1, x);
+            return hdi_fail_face(e, hdi_finite(x) ? HD_ERR_ARGUMENT : HD_ERR_NOT_FINITE, bad, c / 3, -1, x);
     }
     return HD_OK;
 }
@@ -4558,8 +4551,9 @@ static double hdi_poly_measure(const hdi_mesh *mesh, int32_t f, double *steepest
 
 /* ---- areas of all faces, and the corners at each vertex ---- */
 
-/* Loops over faces or vertices are cut into so many blocks at most, of so many at least. */
-enum { HDI_BLOCKS_MOST = 64, HDI_BLOCK_LEAST = 4096 };
+/* Loops over faces or vertices are cut into so many blocks at most, of so many at least. Memory is asked for
+ * so many faces or links early. */
+enum { HDI_BLOCKS_MOST = 64, HDI_BLOCK_LEAST = 4096, HDI_FACES_AHEAD = 12, HDI_LINKS_AHEAD = 16 };
 
 static int64_t hdi_block_size(int64_t n) {
     const int64_t size = (n + HDI_BLOCKS_MOST - 1) / HDI_BLOCKS_MOST;
@@ -4633,12 +4627,81 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
     return area;
 }
 
+/* The smallest vertex of face f; n: it has no corners. *bit: one of 64, by its corners in any order. */
+static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f, uint64_t *bit) {
+    const int32_t *v = mesh->tri + hdi_face_begin(mesh, f);
+    int32_t least = mesh->n;
+    uint64_t sum = 0;
+    int64_t k;
+    if (!hdi_is_poly(mesh)) {
+        least = hdi_low32(hdi_low32(v[0], v[1]), v[2]);
+        sum = (uint64_t)v[0] + (uint64_t)v[1] + (uint64_t)v[2];
+    }
+    for (k = 0; hdi_is_poly(mesh) && k < hdi_face_size(mesh, f); k++) {
+        least = hdi_low32(least, v[k]);
+        sum += (uint64_t)v[k];
+    }
+    *bit = (uint64_t)1 << (sum * 0x9e3779b97f4a7c15u >> 58);
+    return least;
+}
+
+/* Have the faces of c and d, whose keys are the same, their corners in the same cyclic order? */
+static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
+    const int forward = mesh->tri[hdi_corner_after(mesh, c)] == mesh->tri[hdi_corner_after(mesh, d)];
+    int64_t a = c, b = d;
+    do {
+        if (mesh->tri[a] != mesh->tri[b]) return 0;
+        a = hdi_corner_after(mesh, a);
+        b = forward ? hdi_corner_after(mesh, b) : hdi_corner_before(mesh, b);
+    } while (a != c && b != d);
+    return a == c && b == d;
+}
+
+/* Of the faces [f, end), whose smallest vertex is v, those are left out for good that have the corners of an
+ * earlier one in the same cyclic order, in either direction. */
+static void hdi_mesh_repeats(const hdi_mesh *mesh, int32_t v, int32_t f, int32_t end, hdi_tally *t) {
+    hdi_pair *list = (hdi_pair *)(void *)mesh->link + f;
+    int32_t p, q, a, b, n = 0;
+    int64_t c;
+    for (; f < end; f++) {
+        if (!(mesh->area[f] > 0)) continue;
+        for (c = hdi_face_begin(mesh, f); mesh->tri[c] != v;) c++;
+        a = mesh->tri[hdi_corner_before(mesh, c)];         /* which tell triangles apart */
+        b = mesh->tri[hdi_corner_after(mesh, c)];
+        list[n].key = (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
+        list[n++].id = c;
+    }
+    if (n > 1) hdi_sort_pairs(list, n);
+    for (p = 1; p < n; p++) {
+        for (q = p - 1; q >= 0 && list[q].key == list[p].key; q--)
+            if (hdi_corner_same(mesh, list[p].id, list[q].id)) break;
+        if (q < 0 || list[q].key != list[p].key) continue;
+        mesh->area[hdi_corner_face(mesh, list[p].id)] *= -1;
+        t->n[HDI_USED]--;
+        t->n[HDI_REPEATED_FACE]++;
+    }
+}
+
+/* A block begins behind the faces that belong to the one before. */
 static void hdi_measure_task(void *arg, int64_t begin, int64_t end) {
     const hdi_mesh *mesh = (const hdi_mesh *)arg;
     hdi_tally tally = hdi_tally_none;
-    int32_t f;
-    for (f = (int32_t)begin; f < end; f++) {
-        mesh->area[f] = hdi_face_measure(mesh, f, &tally);
+    int32_t f = (int32_t)begin, first, v, least;
+    uint64_t bit, seen, twice;
+    int q;
+    v = f > 0 ? hdi_face_least(mesh, f - 1, &bit) : -1;
+    while ((least = hdi_face_least(mesh, f, &bit)) == v && ++f < end) {}
+    while (f < end) {
+        for (first = f, v = least, seen = twice = 0; f < mesh->m && least == v;) {
+            const int32_t *ahead = mesh->tri + hdi_triple(hdi_low32(f + HDI_FACES_AHEAD, mesh->m - 1));
+            for (q = 0; mesh->xyz && !hdi_is_poly(mesh) && q < 3; q++)
+                HDI_PREFETCH(hdi_at3(mesh->xyz, ahead[q]));
+            twice |= seen & bit;
+            seen |= bit;
+            mesh->area[f] = hdi_face_measure(mesh, f, &tally);
+            if (++f < mesh->m) least = hdi_face_least(mesh, f, &bit);
+        }
+        if (mesh->repeats && twice) hdi_mesh_repeats(mesh, v, first, f, &tally);
     }
     mesh->tally[begin / hdi_block_size(mesh->m)] = tally;
 }
@@ -4655,8 +4718,9 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
                              mesh->area[all.refused]);
     rep->n_repeated_corner = (int32_t)all.n[HDI_REPEATED_CORNER];
     rep->n_zero_area = (int32_t)all.n[HDI_ZERO_AREA];
+    rep->n_repeated_face = (int32_t)all.n[HDI_REPEATED_FACE];
     rep->n_faces_used = (int32_t)all.n[HDI_USED];
-    rep->n_faces = rep->n_faces_used + rep->n_repeated_corner + rep->n_zero_area;
+    rep->n_faces = rep->n_faces_used + rep->n_repeated_corner + rep->n_zero_area + rep->n_repeated_face;
     rep->smallest_angle = rep->n_faces_used > 0 ? atan2(1, all.steepest) : 0;
     return HD_OK;
 }
@@ -4664,6 +4728,11 @@ static hd_status hdi_faces_measure(hdi_mesh *mesh, hd_mesh_report *rep, hd_conte
 /* Arrays for what is measured of the faces, in s. */
 static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     const int64_t n = hdi_face_begin(mesh, mesh->m);
+    int64_t links = hdi_is_poly(mesh) ? 2 * (int64_t)mesh->m : n;
+    int32_t f;
+    for (f = 0; hdi_is_poly(mesh) && f < mesh->m; f++)
+        links += hdi_face_size(mesh, f) * (hdi_face_size(mesh, f) - 1) / 2;
+    mesh->link = HDI_TAKE(s, uint64_t, links + HDI_LINKS_AHEAD);
     mesh->area = HDI_TAKE_ZERO(s, double, mesh->m);
     mesh->tally = HDI_TAKE(s, hdi_tally, HDI_BLOCKS_MOST);
     if (!hdi_is_poly(mesh)) mesh->cot = HDI_TAKE(s, double, n);
@@ -4674,69 +4743,15 @@ static hd_status hdi_mesh_take(hdi_mesh *mesh, hdi_scope *s) {
     return s->e->status;
 }
 
-/* Lists the corners at all vertices, of the faces that have an area, in s. */
+/* Lists the corners at all vertices, in s. */
 static hd_status hdi_mesh_corners(hdi_mesh *mesh, hdi_scope *s) {
-    int64_t *HDI_RESTRICT at = mesh->at = HDI_TAKE_ZERO(s, int64_t, (int64_t)mesh->n + 1), c, end;
-    int32_t f;
-    mesh->corner = HDI_TAKE(s, int32_t, hdi_face_begin(mesh, mesh->m));
+    const int32_t n = (int32_t)hdi_face_begin(mesh, mesh->m);
+    int32_t *at = mesh->at = HDI_TAKE(s, int32_t, (int64_t)mesh->n + 1), v;
+    mesh->corner = HDI_TAKE(s, int32_t, n);
     if (s->e->status < 0) return s->e->status;
-    for (f = 0, c = 0; f < mesh->m; f++)
-        for (end = c + hdi_face_size(mesh, f); c < end; c++) at[mesh->tri[c]] += mesh->area[f] > 0;
-    hdi_prefix_sum(at, mesh->n);
-    for (f = 0, c = 0; f < mesh->m; f++, c = end) {
-        end = c + hdi_face_size(mesh, f);
-        for (; mesh->area[f] > 0 && c < end; c++) mesh->corner[at[mesh->tri[c]]++] = (int32_t)c;
-    }
-    memmove(at + 1, at, (size_t)mesh->n * sizeof *at);           /* each has moved on to the next */
-    at[0] = 0;
+    hdi_group(mesh->tri, n, mesh->n, at, mesh->corner);
+    for (mesh->most = 1, v = 0; v < mesh->n; v++) mesh->most = hdi_high32(mesh->most, at[v + 1] - at[v]);
     return HD_OK;
-}
-
-/* The smallest vertex of face f; n: it has no corners. */
-static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f) {
-    const int32_t *v = mesh->tri + hdi_face_begin(mesh, f);
-    int32_t least = mesh->n;
-    int64_t k;
-    if (!hdi_is_poly(mesh)) return hdi_low32(hdi_low32(v[0], v[1]), v[2]);
-    for (k = 0; k < hdi_face_size(mesh, f); k++) least = hdi_low32(least, v[k]);
-    return least;
-}
-
-/* Have the faces of c and d, whose keys are the same, their corners in the same cyclic order? */
-static int hdi_corner_same(const hdi_mesh *mesh, int64_t c, int64_t d) {
-    const int forward = mesh->tri[hdi_corner_after(mesh, c)] == mesh->tri[hdi_corner_after(mesh, d)];
-    int64_t a = c, b = d;
-    while (mesh->tri[a] == mesh->tri[b]) {
-        a = hdi_corner_after(mesh, a);
-        b = forward ? hdi_corner_after(mesh, b) : hdi_corner_before(mesh, b);
-        if (a == c || b == d) return a == c && b == d;
-    }
-    return 0;
-}
-
-/* Of the faces from f on with its smallest vertex those get area 0 that have the corners of an earlier one in
- * the same cyclic order, in either direction. Counts them. Returns the face behind. list: room for all. */
-static int32_t hdi_mesh_repeats(const hdi_mesh *mesh, int32_t f, hdi_pair *list, int64_t *count) {
-    const int32_t v = hdi_face_least(mesh, f);
-    int32_t p, q, a, b, n = 0;
-    int64_t c;
-    for (; f < mesh->m && hdi_face_least(mesh, f) == v; f++) {
-        if (!(mesh->area[f] > 0)) continue;
-        for (c = hdi_face_begin(mesh, f); mesh->tri[c] != v;) c++;
-        a = mesh->tri[hdi_corner_before(mesh, c)];         /* which tell triangles apart */
-        b = mesh->tri[hdi_corner_after(mesh, c)];
-        list[n].key = (uint64_t)hdi_low32(a, b) << 32 | (uint64_t)hdi_high32(a, b);
-        list[n++].id = c;
-    }
-    if (n > 1) hdi_sort_pairs(list, n);
-    for (p = 1; p < n; p++) {
-        for (q = p - 1; q >= 0 && list[q].key == list[p].key; q--)
-            if (hdi_corner_same(mesh, list[p].id, list[q].id)) break;
-        if (q < 0 || list[q].key != list[p].key) continue;
-        mesh->area[hdi_corner_face(mesh, list[p].id)] = 0;
-        ++*count;
-    }
-    return f;
 }
 
 /* ---- edges ---- */
@@ -4757,17 +4772,18 @@ static int32_t hdi_edge_sides(const hdi_mesh *mesh, int32_t v, int32_t w, hdi_pa
     return n;
 }
 
-/* The edge of side s, if that is of a face with an area: all its sides, its smaller vertex into v. */
+/* The edge of side s, if that is of a face that has an area or repeats one: all its sides, its smaller vertex
+ * into v. */
 static int32_t hdi_side_edge(const hdi_mesh *mesh, int32_t s, int32_t *v, hdi_pair *list) {
     const int32_t i = mesh->tri[s], j = mesh->tri[hdi_side_next(s)];
     *v = hdi_low32(i, j);
-    return mesh->area[s / 3] > 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
+    return mesh->area[s / 3] != 0 ? hdi_edge_sides(mesh, *v, hdi_high32(i, j), list) : 0;
 }
 
 /* Do the faces at each edge agree on its length? */
 static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
-    hdi_pair *list = HDI_TAKE(&own, hdi_pair, hdi_fullest(mesh->at, mesh->n));
+    hdi_pair *list = HDI_TAKE(&own, hdi_pair, mesh->most);
     int32_t c, v;
     for (c = 0; c < 3 * mesh->m && s->e->status >= 0; c++) {
         const double b = mesh->len[c], a = hdi_side_edge(mesh, c, &v, list) > 0 ? mesh->len[list->id] : b;
@@ -4782,12 +4798,13 @@ static hd_status hdi_lengths_agree(const hdi_mesh *mesh, hdi_scope *s) {
 static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     hdi_scope own = hdi_scope_begin(s->ctx, s->e);
     const int32_t *v = mesh->tri, m = mesh->m;
-    int32_t *low = HDI_TAKE(&own, int32_t, m), *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 2), f;
+    int32_t *low = (int32_t *)(void *)mesh->link, *at = HDI_TAKE(&own, int32_t, (int64_t)mesh->n + 2), f;
     int32_t *tri = HDI_TAKE(s, int32_t, hdi_face_begin(mesh, m)), *face = HDI_TAKE(s, int32_t, m);
     int64_t *ptr = hdi_is_poly(mesh) ? HDI_TAKE(s, int64_t, (int64_t)m + 1) : NULL, n, k, q;
     double *len = mesh->len ? HDI_TAKE(s, double, hdi_triple(m)) : NULL;
+    uint64_t bit;
     if (s->e->status < 0) return hdi_scope_end(&own);
-    for (f = 0; f < m; f++) low[f] = hdi_face_least(mesh, f);
+    for (f = 0; f < m; f++) low[f] = hdi_face_least(mesh, f, &bit);
     hdi_group(low, m, mesh->n + 1, at, face);
     for (f = 0, n = 0; f < m; f++, n += k) {
         const int32_t *from = v + hdi_face_begin(mesh, face[f]);
@@ -4802,13 +4819,15 @@ static hd_status hdi_mesh_sort(hdi_mesh *mesh, hdi_scope *s) {
     mesh->ptr = ptr;
     mesh->face = face;
     mesh->len = len;
+    mesh->repeats = 1;
     return hdi_scope_end(&own);
 }
 
-/* Measures the faces of a mesh that is checked, in s. */
+/* Measures the faces of a mesh that is checked, in s, in one block with what rows take. */
 static hd_status hdi_mesh_make(hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
-    if (!mesh->copies && hdi_mesh_sort(mesh, s) < 0) return s->e->status;
-    if (hdi_mesh_take(mesh, s) < 0 || hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
+    if (!hdi_is_poly(mesh)) hdi_take_room(s, 4096 + 72 * (int64_t)mesh->m + 21 * (int64_t)mesh->n);
+    if (hdi_mesh_take(mesh, s) < 0 || (!mesh->copies && hdi_mesh_sort(mesh, s) < 0) ||
+        hdi_faces_measure(mesh, rep, s->ctx, s->e) < 0) return s->e->status;
     return mesh->len && hdi_mesh_corners(mesh, s) >= 0 ? hdi_lengths_agree(mesh, s) : s->e->status;
 }
 
@@ -5023,10 +5042,10 @@ static int hdi_polygon_clip_hull(hdi_polygon *g, double (*x)[2], int32_t n) {
  * Deviations: the sheets around an edge of three faces or more follow each other by their angle in space, and
  * copies of a face lie in layers (the paper takes any order). A manifold without boundary whose faces are
  * oriented alike is its own cover: half of it is not stored. A flip must also lower the sum of the six
- * cotangents. In exact arithmetic it always does (Rippa 1990), and so rounding cannot make flips run in
- * circles. Zero-area faces are left out before. Lengths are in units of the mean edge length: nothing
- * overflows, and results do not depend on the unit of the coordinates. Only what a flip needs is
- * unfolded. */
+ * cotangents by more than their rounding. In exact arithmetic it always does (Rippa 1990), and so rounding
+ * cannot make flips run in circles. Zero-area faces are left out before. Lengths are in units of the mean
+ * edge length: nothing overflows, and results do not depend on the unit of the coordinates. Only what a flip
+ * needs is unfolded. */
 
 /* ---- soups ----
  * Different faces, each of which comes once, as in meshes, or several times, as in the stars of points,
@@ -5089,8 +5108,6 @@ static hd_status hdi_soup_lengths(hdi_surface *z, double delta, hd_mesh_report *
  * at once, when it is looked at. */
 
 enum { HDI_SIDE_OPEN = -1, HDI_SIDE_LOOSE = -2 };    /* instead of a twin: boundary; not glued yet */
-/* flips stop after so many, which no mesh has ever come near to; what is left is counted */
-enum { HDI_FLIPS_PER_SIDE = 64 };
 
 typedef struct hdi_side {
     double len;         /* the same on both sides of an edge */
@@ -5112,7 +5129,7 @@ typedef struct hdi_cover {
     int32_t stack;      /* the side to look at next; -1: none */
     signed char *glued; /* [3 m] of an edge its first side */
     hdi_pair *list;     /* [most faces at an edge] */
-    int64_t most_flips, work;
+    int64_t work;
 } hdi_cover;
 
 /* Room for more faces, in one block: at least twice as many as before. */
@@ -5139,7 +5156,6 @@ static hd_status hdi_cover_begin(hdi_cover *c, const hdi_surface *z, int close, 
                                  hdi_scope *s) {
     const hdi_mesh *mesh = &z->mesh;
     const int32_t m = mesh->m;
-    int32_t f;
     memset(c, 0, sizeof *c);
     c->z = z;
     c->ctx = s->ctx;
@@ -5148,13 +5164,11 @@ static hd_status hdi_cover_begin(hdi_cover *c, const hdi_surface *z, int close, 
     c->stack = -1;
     c->first = HDI_TAKE(s, int32_t, m);
     c->glued = HDI_TAKE_ZERO(s, signed char, hdi_triple(m));
-    c->list = HDI_TAKE(s, hdi_pair, hdi_fullest(mesh->at, mesh->n));
+    c->list = HDI_TAKE(s, hdi_pair, mesh->most);
     if (s->e->status < 0) return s->e->status;
     hdi_fill_i32(c->first, m, -1);
     c->n_sheets = mesh->copies || rep->n_nonmanifold_edges || rep->n_misoriented_edges ||
                   (close && rep->n_boundary_edges) ? 2 : 1;
-    for (f = 0; f < m; f++)
-        c->most_flips += 3 * HDI_FLIPS_PER_SIDE * c->n_sheets * (int64_t)hdi_copies(mesh, f);
     return HD_OK;
 }
 
@@ -5317,7 +5331,7 @@ static int hdi_flip(hdi_cover *t, int32_t a) {
     before = hdi_harmonic(len, len_0, len_3, t->area[a / 3]) +
              hdi_harmonic(len, len_1, len_2, t->area[b / 3]);
     after = hdi_harmonic(d, len_0, len_1, area_f) + hdi_harmonic(d, len_2, len_3, area_g);
-    if (!(after < before)) return 0;
+    if (!(after < before * (1 - 8 * DBL_EPSILON))) return 0;
     for (k = 0; k < 4; k++) {
         old[k] = side[from[k]];
         for (q = 0; q < 4; q++) {                /* outer sides that are glued to each other */
@@ -5352,7 +5366,7 @@ static hd_status hdi_cover_flip(hdi_cover *c, double done, hd_mesh_report *rep) 
         c->stack = c->side[a].next;
         c->side[a].next = HDI_SIDE_LOOSE;
         if (!(++c->work & 0xfffff) && hdi_progress(c->ctx, "flip edges", done, c->e) < 0) return c->e->status;
-        if (rep->n_flips >= c->most_flips || !hdi_not_delaunay(c, a)) continue;
+        if (!hdi_not_delaunay(c, a)) continue;
         for (k = 0; k < 4; k++)
             if (hdi_cover_need(c, hdi_side_around(c, a, k)) < 0) return c->e->status;
         if (!hdi_flip(c, a)) continue;
@@ -5413,7 +5427,6 @@ static void hdi_flat_add(hdi_surface *z, const int32_t *v, const double *len, do
     z->flat.area[at] = 0;
     if (!(area > 0)) return;
     hdi_length_cots(len, area, cot);
-    if (!hdi_finite(fabs(cot[0]) + fabs(cot[1]) + fabs(cot[2]))) return;
     *steepest = hdi_max(*steepest, hdi_max(cot[0], hdi_max(cot[1], cot[2])));
     for (q = 0; q < 3; q++) cot[q] *= weight;
     area *= weight * unit * unit;
@@ -5490,7 +5503,7 @@ static int hdi_is_plain(hd_laplacian_kind kind) {
 /* What a vertex shares with a later one. */
 typedef struct hdi_edge {
     double L, B;                /* sums of elements, and of areas */
-    double size;                /* length of the side, where lengths are given; or of what L sums up */
+    double size;                /* square of its length, but not of polygons; or sizes of what L sums up */
     int32_t to;                 /* the other one */
     int32_t faces, forward;     /* of which their edge is a side; sides that run from the vertex to it */
 } hdi_edge;
@@ -5500,9 +5513,9 @@ typedef struct hdi_edge {
 typedef struct hd_moving {
     hdi_mesh mesh;
     hd_laplacian *lap;          /* whose rows are filled; NULL: edges are counted */
-    int64_t *first;             /* [n + 1] the links of each vertex to later ones, or to itself */
-    uint64_t *link;             /* that << 32 | its corner, of triangles where the side begins; ascending */
-    hdi_pair *list;             /* [m] work */
+    int together;               /* 1: one thread does all, and no vertex is held */
+    int64_t *first;             /* [n + 1] the links of each vertex to later ones, or to itself, in mesh.link:
+        that << 32 | its corner, of triangles where the side begins << 1 | the side begins here; ascending */
     int32_t *count, *later;     /* [n] entries of a row, -1: it has no face; those behind the diagonal */
     int32_t *work;              /* [n] */
     char *border;               /* [n] 1: at an edge with one face */
@@ -5643,17 +5656,22 @@ static void hdi_lap_pack(hd_laplacian *lap) {
 }
 
 /* Components by values: an entry of L or B that is not zero joins its rows. They are numbered by their first
- * row. */
+ * row. Besides, Gershgorin's bound on the eigenvalues of B^-1 L. */
 static void hdi_lap_connect(hd_laplacian *lap) {
     int32_t *c = lap->component, i;
-    int64_t p;
+    double most = 0, size;
+    int64_t p = 0;
     hdi_fill_own(c, lap->n_active);
     for (i = 0; i < lap->n_active; i++) {
-        for (p = lap->L.row_ptr[i]; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
+        for (size = 0; p < lap->L.row_ptr[i + 1] && lap->L.col[p] < i; p++) {
             const int joins = lap->L.val[p] != 0 || (lap->B && lap->B[p] != 0);
+            size += fabs(lap->L.val[p]);
             if (joins && c[i] != c[lap->L.col[p]]) (void)hdi_unite(c, i, lap->L.col[p]);
         }
+        for (; p < lap->L.row_ptr[i + 1]; p++) size += fabs(lap->L.val[p]);
+        most = hdi_max(most, size / lap->b_diag[i]);
     }
+    lap->lambda_max = lap->b_ratio > 0 ? most / lap->b_ratio : HUGE_VAL;
     lap->n_components = 0;                       /* c[i] <= i, and before i they have their numbers */
     for (i = 0; i < lap->n_active; i++) c[i] = c[i] == i ? lap->n_components++ : c[c[i]];
 }
@@ -5672,7 +5690,7 @@ static void hdi_lap_component_masses(hd_laplacian *lap) {
     if (!lap->conserves && x) hdi_lap_component_masses(lap);           /* finite ones */
 }
 
-/* Components and their masses, once L, B and mass have values, new or for the first time. */
+/* Components, their masses and lambda_max, once L, B and mass have values, new or for the first time. */
 static hd_status hdi_lap_components(hd_laplacian *lap, hd_error *e) {
     hdi_scope *keep = hdi_lap_keep(lap, e);
     lap->version += lap->component != NULL;
@@ -5706,26 +5724,28 @@ static hd_status hdi_lap_places(hd_laplacian *lap, const double *xyz, hd_error *
  * hundreds of corners are fine. Their M has a positive definite part for any lambda > 0; we take one
  * number for all faces. On triangles the second part is zero, and is not computed. */
 
-/* The mass that corner q of a triangle has by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
+/* The masses that a triangle's corners have by the mixed rule. In a face without obtuse angle, (|ab|^2 cot c
  * + |ac|^2 cot b) / 8 at a is area/4 (1 + cot b cot c), as |ab|^2 = 2 area (cot a + cot b) and the three
  * products of two cotangents sum to 1. Here they are divided by their sum, so that the shares add up to the
  * area whatever rounding does, and cotangents may carry a factor. The tip of a needle, which has the
  * smallest angle, has a quarter. */
-static double hdi_mixed_mass(const double *cot, int64_t q, double area) {
-    const double least = hdi_min(cot[0], hdi_min(cot[1], cot[2]));
-    const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2])), obtuse = least < 0;
-    const double sum = cot[1] * cot[2] + cot[2] * cot[0] + cot[0] * cot[1], size = sum > 1e-100 ? sum : 1;
-    if (size != sum && !(least < 0)) return cot[q] < most ? area / 4 + area / 8 : area / 4;
-    return area / 4 * (1 + obtuse * (cot[q] < 0) +
-                       (1 - obtuse) * (cot[hdi_next3[q]] * cot[hdi_prev3[q]] / size));
+static HDI_INLINE void hdi_mixed_masses(const double *cot, double area, double *mass) {
+    const double least = hdi_min(cot[0], hdi_min(cot[1], cot[2])), quarter = area / 4;
+    const double x[3] = {cot[1] * cot[2], cot[2] * cot[0], cot[0] * cot[1]}, sum = x[0] + x[1] + x[2];
+    const double blunt = least < 0 ? quarter : 0, scale = least < 0 || !(sum > 1e-100) ? 0 : quarter / sum;
+    const double needle = least < 0 || sum > 1e-100 ? 0 : quarter / 2;
+    const double most = hdi_max(cot[0], hdi_max(cot[1], cot[2]));
+    int q;
+    for (q = 0; q < 3; q++)
+        mass[q] = quarter + (blunt * (cot[q] < 0) + scale * x[q]) + needle * (cot[q] < most);
 }
 
 /* Adds a link of vertex v: an entry of L_f. */
 static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t link, hdi_edge *e) {
-    const int32_t q = (int32_t)(uint32_t)link, f = hdi_corner_face(mesh, q), *c;
+    const int32_t q = (int32_t)((uint32_t)link >> 1), f = hdi_corner_face(mesh, q), *c;
     const int64_t begin = hdi_face_begin(mesh, f);
     const double *cot = mesh->cot, *w, *own;
-    int32_t faces = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, forward = mesh->tri[q] == v;
+    int32_t faces = hdi_copies(mesh, f), odd = mesh->odd ? mesh->odd[f] : 0, forward = link & 1;
     if (!(mesh->area[f] > 0)) return;
     if (hdi_is_poly(mesh)) {
         for (c = mesh->corner + mesh->at[v]; mesh->of[*c] != f;) c++;
@@ -5738,8 +5758,9 @@ static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t li
     } else {
         e->L -= cot[begin + hdi_prev3[q - begin]] / 2;
     }
-    if (mesh->len) e->size = mesh->len[q];
+    if (mesh->len) e->size = mesh->len[q] * mesh->len[q];
     else if (!mesh->xyz) e->size += fabs(cot[begin]) + fabs(cot[begin + 1]) + fabs(cot[begin + 2]);
+    else if (cot) e->size = hdi_max(0, 2 * mesh->area[f] * (cot[q] + cot[begin + hdi_next3[q - begin]]));
     e->B += mesh->area[f];
     e->faces += faces;
     e->forward += forward ? faces - odd : odd;
@@ -5748,81 +5769,28 @@ static HDI_INLINE void hdi_link_add(const hdi_mesh *mesh, int32_t v, uint64_t li
 /* The edge of vertex v whose links begin at p, which moves on. Without coordinates, weights above zero are
  * there by rounding only: they become zero when they are below 1e-13 of the cotangents that they sum up. */
 static HDI_INLINE hdi_edge hdi_rows_edge(const hdi_rows *x, int32_t v, int64_t *p) {
-    const uint64_t *link = x->link + *p, *end = x->link + x->first[v + 1];
+    const uint64_t *link = x->mesh.link + *p, *end = x->mesh.link + x->first[v + 1];
     hdi_edge e = {0, 0, 0, 0, 0, 0};
-    for (e.to = (int32_t)(*link >> 32); link < end && (int32_t)(*link >> 32) == e.to; link++)
+    for (e.to = (int32_t)(*link >> 32); link < end && (int32_t)(*link >> 32) == e.to; link++) {
+        const int64_t ahead = hdi_is_poly(&x->mesh) ? 0 : (uint32_t)link[HDI_LINKS_AHEAD] / 6;
+        HDI_PREFETCH(x->mesh.area + ahead);
+        HDI_PREFETCH(x->mesh.cot + 3 * ahead);
         hdi_link_add(&x->mesh, v, *link, &e);
-    *p = link - x->link;
+    }
+    *p = link - x->mesh.link;
     if (!x->mesh.xyz && !x->mesh.len && e.L > 0 && e.L <= 1e-13 * e.size) e.L = 0;
     return e;
 }
 
-/* Counts the edges of vertex v, and fills its row, if it has one, behind the diagonal. A column without a row
- * is not written. An edge from the vertex to itself has no weight, and is twice in its B. */
-static HDI_INLINE void hdi_rows_fill(const hdi_rows *x, int32_t v, hdi_tally *t) {
-    const hdi_mesh *mesh = &x->mesh;
-    hd_laplacian *lap = x->lap;
-    const int32_t i = lap ? lap->row[v] : -1;
-    int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
-    double own = 0;
-    int leaks = 0;
-    x->border[v] = 0;
-    for (p = x->first[v]; p < x->first[v + 1];) {
-        const hdi_edge e = hdi_rows_edge(x, v, &p);
-        const int32_t j = i < 0 ? -1 : lap->row[e.to];
-        if (e.to == v) {
-            own = e.B / 6;
-            continue;
-        }
-        t->n[HDI_NEGATIVE] += e.L > 0;
-        if (e.faces > 0 && (mesh->xyz || mesh->len)) {
-            t->n[HDI_EDGES]++;
-            x->border[v] |= e.faces == 1;
-            if (e.faces == 1) t->n[HDI_BOUNDARY]++;
-            else if (e.faces > 2) t->n[HDI_NONMANIFOLD]++;
-            else if (e.forward != 1) t->n[HDI_MISORIENTED]++;
-            t->length += mesh->len ? e.size : hdi_edge_length(mesh->xyz, v, e.to);
-        }
-        if (i < 0) continue;
-        leaks |= j < 0 && e.L != 0;
-        if (j < 0) continue;
-        lap->L.col[at] = j;
-        lap->L.val[at] = e.L;
-        if (lap->B) lap->B[at] = e.B / 12;
-        at++;
-    }
-    if (i < 0) return;
-    lap->L.col[diagonal] = i;
-    lap->L.val[diagonal] = 0;
-    /* a sixth of the areas that the mass has thirds of */
-    if (lap->B) lap->B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + own;
-    if (lap->holding) lap->holding->leak[v] = (char)leaks;
-}
-
-static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
-    hdi_rows x = *(const hdi_rows *)arg;
-    hdi_tally tally = hdi_tally_none;
-    int32_t v;
-    if (x.mesh.xyz && !x.mesh.ptr && !x.mesh.copies) {     /* as the compiler is to know */
-        x.mesh.ptr = NULL;
-        x.mesh.len = NULL;
-        x.mesh.copies = x.mesh.odd = NULL;
-        for (v = (int32_t)begin; v < end; v++) hdi_rows_fill(&x, v, &tally);
-    } else {
-        for (v = (int32_t)begin; v < end; v++) hdi_rows_fill(&x, v, &tally);
-    }
-    x.mesh.tally[begin / hdi_block_size(x.mesh.n)] = tally;
-}
-
 /* Copies what rows have behind their diagonals into the later rows, and makes the sums of rows zero. What is
  * shared with vertices that are held counts as well, in its place of the sum. */
-static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
+static void hdi_rows_mirror(const hdi_rows *x, int32_t v, int32_t end) {
+    hd_laplacian *lap = x->lap;
     const int64_t *ptr = lap->L.row_ptr;
     double *HDI_RESTRICT L = lap->L.val, *HDI_RESTRICT B = lap->B, sum;
-    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT before = x->work, v;
+    int32_t *HDI_RESTRICT col = lap->L.col, *HDI_RESTRICT before = x->work;
     int64_t p, q, diagonal;
-    hdi_fill_i32(before, lap->n_active, 0);
-    for (v = 0; v < lap->n; v++) {
+    for (; v < end; v++) {
         const int32_t i = lap->row[v];
         diagonal = i < 0 ? 0 : ptr[i + 1] - x->later[v] - 1;
         for (p = x->first[v]; lap->n_held > 0 && p < x->first[v + 1];) {
@@ -5847,17 +5815,72 @@ static void hdi_rows_mirror(const hdi_rows *x, hd_laplacian *lap) {
     }
 }
 
+/* Counts the edges of vertices, and fills their rows, where they have one, behind the diagonal. A column
+ * without a row is not written. An edge from the vertex to itself has no weight, and is twice in its B. One
+ * thread that does all copies rows while they are in its caches. */
+static void hdi_rows_task(void *arg, int64_t begin, int64_t end) {
+    const hdi_rows *x = (const hdi_rows *)arg;
+    const hdi_mesh *mesh = &x->mesh;
+    hd_laplacian *lap = x->lap;
+    hdi_tally tally = hdi_tally_none, *t = &tally;
+    int32_t v;
+    for (v = (int32_t)begin; v < end; v++) {
+        const int32_t i = lap ? lap->row[v] : -1;
+        int64_t at = i < 0 ? 0 : lap->L.row_ptr[i + 1] - x->later[v], diagonal = at - 1, p;
+        double own = 0;
+        int leaks = 0;
+        x->border[v] = 0;
+        for (p = x->first[v]; p < x->first[v + 1];) {
+            const hdi_edge e = hdi_rows_edge(x, v, &p);
+            const int32_t j = i < 0 ? -1 : lap->row[e.to];
+            if (e.to == v) {
+                own = e.B / 6;
+                continue;
+            }
+            t->n[HDI_NEGATIVE] += e.L > 0;
+            if (e.faces > 0 && (mesh->xyz || mesh->len)) {
+                t->n[HDI_EDGES]++;
+                x->border[v] |= e.faces == 1;
+                if (e.faces == 1) t->n[HDI_BOUNDARY]++;
+                else if (e.faces > 2) t->n[HDI_NONMANIFOLD]++;
+                else if (e.forward != 1) t->n[HDI_MISORIENTED]++;
+                t->length += hdi_is_poly(mesh) ? hdi_edge_length(mesh->xyz, v, e.to) : sqrt(e.size);
+            }
+            if (i < 0) continue;
+            leaks |= j < 0 && e.L != 0;
+            if (j < 0) continue;
+            lap->L.col[at] = j;
+            lap->L.val[at] = e.L;
+            if (lap->B) lap->B[at] = e.B / 12;
+            at++;
+        }
+        if (i < 0) continue;
+        lap->L.col[diagonal] = i;
+        lap->L.val[diagonal] = 0;
+        /* a sixth of the areas that the mass has thirds of */
+        if (lap->B) lap->B[diagonal] = lap->b_diag[i] = lap->mass[i] / 2 + own;
+        if (lap->holding) lap->holding->leak[v] = (char)leaks;
+    }
+    if (lap && x->together) hdi_rows_mirror(x, (int32_t)begin, (int32_t)end);
+    mesh->tally[begin / hdi_block_size(mesh->n)] = tally;
+}
+
 /* Masses that the faces give the rows. */
 static void hdi_rows_masses(const hdi_mesh *mesh, hd_laplacian *lap) {
+    const int mixed = lap->kind == HD_LAPLACIAN_VORONOI_COT;
+    double share[3] = {0, 0, 0};
     int64_t k, begin = 0, c;
     int32_t f, i;
     for (i = 0; i < lap->n_active; i++) lap->mass[i] = hdi_is_plain(lap->kind);
     for (f = 0; f < mesh->m && !hdi_is_plain(lap->kind); f++, begin += k) {
-        const double area = mesh->area[f], share = area / (double)(k = hdi_face_size(mesh, f));
-        for (c = begin; c < begin + k && area > 0; c++) {
-            i = lap->row[mesh->tri[c]];
-            if (i >= 0) lap->mass[i] += lap->kind == HD_LAPLACIAN_VORONOI_COT
-                                            ? hdi_mixed_mass(mesh->cot + begin, c - begin, area) : share;
+        const double area = mesh->area[f];
+        k = hdi_face_size(mesh, f);
+        if (!(area > 0)) continue;
+        if (mixed) hdi_mixed_masses(mesh->cot + begin, area, share);
+        else share[0] = area / (double)k;
+        for (c = 0; c < k; c++) {
+            i = lap->row[mesh->tri[begin + c]];
+            if (i >= 0) lap->mass[i] += share[mixed ? c : 0];
         }
     }
 }
@@ -5882,23 +5905,26 @@ static int32_t hdi_rows_loops(const hdi_rows *x) {
 
 /* All rows of lap; NULL: of none. Returns what was counted. */
 static hdi_tally hdi_rows_run(hdi_rows *x, hd_laplacian *lap, hd_context *ctx) {
+    const int32_t n = x->mesh.n;
     hdi_tally all;
     x->lap = lap;
+    x->together &= hdi_is_serial(ctx);
     if (lap) hdi_rows_masses(&x->mesh, lap);
-    hdi_parallel_ranges(ctx, x->mesh.n, hdi_block_size(x->mesh.n), hdi_rows_task, x);
-    if (lap) hdi_rows_mirror(x, lap);
-    all = hdi_tally_all(&x->mesh, x->mesh.n);
-    all.n[HDI_LOOPS] = hdi_rows_loops(x);
+    if (lap) hdi_fill_i32(x->work, lap->n_active, 0);
+    hdi_parallel_ranges(ctx, n, hdi_block_size(n), hdi_rows_task, x);
+    if (lap && !x->together) hdi_rows_mirror(x, 0, n);
+    all = hdi_tally_all(&x->mesh, n);
+    all.n[HDI_LOOPS] = all.n[HDI_BOUNDARY] ? hdi_rows_loops(x) : 0;
     return all;
 }
 
-static HDI_INLINE void hdi_rows_link(const hdi_rows *x, int32_t v, int32_t w, int64_t corner) {
+static HDI_INLINE void hdi_rows_link(const hdi_rows *x, int32_t v, int32_t w, int64_t corner, int list) {
     const int64_t at = x->first[hdi_low32(v, w)]++;
-    if (x->link) x->link[at] = (uint64_t)hdi_high32(v, w) << 32 | (uint64_t)corner;
+    if (list) x->mesh.link[at] = (uint64_t)hdi_high32(v, w) << 32 | (uint64_t)(corner << 1) | (v <= w);
 }
 
-/* Counts the links of all vertices; once there is room, lists them. */
-static void hdi_rows_links(const hdi_rows *x) {
+/* Counts the links of all vertices, or lists them. */
+static void hdi_rows_links(const hdi_rows *x, int list) {
     const hdi_mesh *mesh = &x->mesh;
     const int32_t *v = mesh->tri;
     int64_t c, d, k, begin = 0;
@@ -5907,77 +5933,62 @@ static void hdi_rows_links(const hdi_rows *x) {
         k = hdi_face_size(mesh, f);
         if (!(mesh->area[f] > 0)) continue;
         if (!hdi_is_poly(mesh)) {
-            hdi_rows_link(x, v[0], v[1], begin);
-            hdi_rows_link(x, v[1], v[2], begin + 1);
-            hdi_rows_link(x, v[2], v[0], begin + 2);
+            hdi_rows_link(x, v[0], v[1], begin, list);
+            hdi_rows_link(x, v[1], v[2], begin + 1, list);
+            hdi_rows_link(x, v[2], v[0], begin + 2, list);
             continue;
         }
         for (c = 0; c < k; c++)
-            for (d = c + 1; d < k; d++) hdi_rows_link(x, v[c], v[d], begin + (v[c] < v[d] ? d : c));
+            for (d = c + 1; d < k; d++) hdi_rows_link(x, v[c], v[d], begin + (v[c] < v[d] ? d : c), list);
     }
+}
+
+/* Counts the entries of row v behind its diagonal, and of later rows in front, without vertices held. */
+static HDI_INLINE void hdi_rows_count(const hdi_rows *x, const char *held, int32_t v) {
+    const int64_t begin = x->first[v], end = x->first[v + 1];
+    int64_t p = begin;
+    int32_t later = 0;
+    while (p < end) {
+        const int32_t w = (int32_t)(x->mesh.link[p] >> 32);
+        const int32_t counts = w != v && !(held && (held[v] || held[w]));
+        while (++p < end && (int32_t)(x->mesh.link[p] >> 32) == w) {}
+        later += counts;
+        x->count[w] = hdi_high32(x->count[w], 1) + counts;
+    }
+    x->later[v] = later;
+    if (begin < end) x->count[v] = hdi_high32(x->count[v], 1) + later;
 }
 
 static void hdi_links_task(void *arg, int64_t begin, int64_t end) {
     const hdi_rows *x = (const hdi_rows *)arg;
-    int64_t v;
-    for (v = begin; v < end; v++) hdi_sort_keys(x->link + x->first[v], x->first[v + 1] - x->first[v]);
+    int32_t v;
+    for (v = (int32_t)begin; v < end; v++) {
+        hdi_sort_keys(x->mesh.link + x->first[v], x->first[v + 1] - x->first[v]);
+        if (x->together) hdi_rows_count(x, NULL, v);
+    }
 }
 
-/* A block begins behind the faces that belong to the one before. */
-static void hdi_repeats_task(void *arg, int64_t begin, int64_t end) {
-    const hdi_rows *x = (const hdi_rows *)arg;
-    const hdi_mesh *mesh = &x->mesh;
-    int64_t n = 0;
-    int32_t f = (int32_t)begin;
-    while (f > 0 && f < end && hdi_face_least(mesh, f) == hdi_face_least(mesh, f - 1)) f++;
-    while (f < end) f = hdi_mesh_repeats(mesh, f, x->list + f, &n);
-    mesh->tally[begin / hdi_block_size(mesh->m)].n[HDI_REPEATED_FACE] = n;
-}
-
-/* Finds faces that repeat others, which copies do by right, and lists the links, in s. */
-static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, hd_mesh_report *rep, hdi_scope *s) {
+/* Lists the links; the rest is in s. alone: no vertex is held. */
+static hd_status hdi_rows_begin(hdi_rows *x, const hdi_mesh *mesh, int alone, hdi_scope *s) {
     const int32_t n = mesh->n;
     memset(x, 0, sizeof *x);
     x->mesh = *mesh;
-    x->list = HDI_TAKE(s, hdi_pair, mesh->m);
+    x->mesh.repeats = 0;
+    x->together = alone && hdi_is_serial(s->ctx);
     x->first = HDI_TAKE_ZERO(s, int64_t, (int64_t)n + 1);
     x->count = HDI_TAKE(s, int32_t, n);
     x->later = HDI_TAKE(s, int32_t, n);
     x->work = HDI_TAKE(s, int32_t, n);
     x->border = HDI_TAKE(s, char, n);
-    if (s->e->status < 0) return s->e->status;
-    if (!mesh->copies) {
-        hdi_parallel_ranges(s->ctx, mesh->m, hdi_block_size(mesh->m), hdi_repeats_task, x);
-        rep->n_repeated_face = (int32_t)hdi_tally_all(mesh, mesh->m).n[HDI_REPEATED_FACE];
-        rep->n_faces_used -= rep->n_repeated_face;
-    }
-    hdi_rows_links(x);
-    x->link = HDI_TAKE(s, uint64_t, hdi_prefix_sum(x->first, n));
     if (s->e->status < 0 || (hdi_is_poly(mesh) && hdi_mesh_corners(&x->mesh, s) < 0)) return s->e->status;
-    hdi_rows_links(x);
+    hdi_rows_links(x, 0);
+    memset(x->mesh.link + hdi_prefix_sum(x->first, n), 0, HDI_LINKS_AHEAD * sizeof *x->mesh.link);
+    hdi_rows_links(x, 1);
     memmove(x->first + 1, x->first, (size_t)n * sizeof *x->first);         /* each has moved on to the next */
     x->first[0] = 0;
+    hdi_fill_i32(x->count, n, -1);
     hdi_parallel_ranges(s->ctx, n, hdi_block_size(n), hdi_links_task, x);
     return HD_OK;
-}
-
-/* Counts the entries of rows, without the vertices held. */
-static void hdi_rows_count(const hdi_rows *x, const char *held) {
-    int64_t p = 0;
-    int32_t v;
-    hdi_fill_i32(x->count, x->mesh.n, -1);
-    for (v = 0; v < x->mesh.n; v++) {
-        const int64_t begin = p, end = x->first[v + 1];
-        int32_t later = 0;
-        while (p < end) {
-            const int32_t w = (int32_t)(x->link[p] >> 32), counts = w != v && !(held && (held[v] || held[w]));
-            while (++p < end && (int32_t)(x->link[p] >> 32) == w) {}
-            later += counts;
-            x->count[w] = hdi_high32(x->count[w], 1) + counts;
-        }
-        x->later[v] = later;
-        if (begin < end) x->count[v] = hdi_high32(x->count[v], 1) + later;
-    }
 }
 
 /* Marks the vertices of the border where that is asked for. */
@@ -6083,10 +6094,10 @@ static hd_status hdi_input_open(hdi_input *in, const hd_mesh *m, double stiffeni
 static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi_input *in, hdi_scope *s) {
     hdi_rows *x = HDI_TAKE(s, hdi_rows, 1);
     int32_t f;
-    if (!x || hdi_rows_begin(x, mesh, &lap->mesh, s) < 0) return s->e->status;
+    if (!x || hdi_rows_begin(x, mesh, !lap->holding, s) < 0) return s->e->status;
     if (in->updatable) lap->moving = x;
     hdi_rows_border(x, lap);
-    hdi_rows_count(x, hdi_lap_marks(lap));
+    for (f = 0; f < mesh->n && !x->together; f++) hdi_rows_count(x, hdi_lap_marks(lap), f);
     if (hdi_lap_rows(lap, x->count, in->full && lap->kind == HD_LAPLACIAN_FEM, s->e) < 0 ||
         hdi_progress(lap->context, "assemble", 0.4, s->e) < 0 || hdi_lap_places(lap, in->mesh.xyz, s->e) < 0)
         return s->e->status;
@@ -6102,7 +6113,7 @@ static hd_status hdi_lap_mesh(hd_laplacian *lap, const hdi_mesh *mesh, const hdi
 /* (L, B) of the intrinsic Delaunay triangulation of a soup whose faces are measured, in s. */
 static hd_status hdi_lap_flat(hd_laplacian *lap, hdi_surface *z, const hdi_input *in, hdi_scope *s) {
     hdi_rows x;
-    if (hdi_mesh_corners(&z->mesh, s) < 0 || hdi_rows_begin(&x, &z->mesh, &lap->mesh, s) < 0)
+    if (hdi_mesh_corners(&z->mesh, s) < 0 || hdi_rows_begin(&x, &z->mesh, !lap->holding, s) < 0)
         return s->e->status;
     hdi_rows_report(hdi_rows_run(&x, NULL, lap->context), &lap->mesh, &z->unit);
     hdi_rows_border(&x, lap);
@@ -6287,16 +6298,14 @@ static hd_status hdi_pair_fill_row(hd_laplacian *lap, const hd_csr *from, int is
 
 static hd_status hdi_pair_check(const hdi_pair_row *l, const hdi_pair_row *b, int32_t v, hd_error *e) {
     const double l_all = fabs(l->diag) + l->off.high, b_all = b->diag + b->off.high;
-    if (!(b->diag > 0))
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive", v, v, b->diag);
-    if (b->diag < 1 / HDI_RANGE)
-        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is below 1e-100", v, v, b->diag);
-    if (!(b_all <= HDI_RANGE))
-        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "B: the sizes of a row's entries exceed 1e100 together", v,
-                            -1, b_all);
-    if (!(l_all <= HDI_RANGE))
-        return hdi_fail_row(e, HD_ERR_NOT_FINITE, "L: the sizes of a row's entries exceed 1e100 together", v,
-                            -1, l_all);
+    if (!(b->diag >= 1 / HDI_RANGE))
+        return hdi_fail_row(e, HD_ERR_NOT_POSITIVE, "B: a diagonal entry is not positive, or below 1e-100",
+                            v, v, b->diag);
+    if (!(b_all <= HDI_RANGE && l_all <= HDI_RANGE))
+        return hdi_fail_row(e, HD_ERR_NOT_FINITE, b_all <= HDI_RANGE
+                            ? "L: the sizes of a row's entries exceed 1e100 together"
+                            : "B: the sizes of a row's entries exceed 1e100 together", v, -1,
+                            b_all <= HDI_RANGE ? l_all : b_all);
     if (l->diag + 1e-12 * l_all < 0)
         return hdi_fail_row(e, HD_ERR_NOT_POSITIVE,
                             "L has a negative diagonal entry: L is positive semi-definite "
@@ -6647,16 +6656,16 @@ static hd_status hdi_cloud_cells(hdi_cloud *cloud, hdi_scope *s) {
     int32_t i;
     cloud->area = HDI_TAKE(s, double, cloud->n);
     cloud->border = HDI_TAKE(s, int8_t, cloud->n);
-    for (i = 0; i < cloud->n && s->e->status >= 0; i++)
+    if (s->e->status < 0 || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return s->e->status;
+    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cell_task, cloud);
+    for (i = 0; i < cloud->n && s->e->status >= 0; i++) {
         if (!(cloud->nearest[i] * cloud->nearest[i] > DBL_MIN / DBL_EPSILON))
             hdi_fail_face(s->e, HD_ERR_ARGUMENT, "two points are too close together: the square of their "
                           "distance is too small", -1, cloud->name[i], cloud->nearest[i] * cloud->nearest[i]);
-    if (s->e->status < 0 || hdi_progress(s->ctx, "assemble", 0.2, s->e) < 0) return s->e->status;
-    hdi_parallel_ranges(s->ctx, cloud->n, HDI_POINTS_PER_TASK, hdi_cell_task, cloud);
-    for (i = 0; i < cloud->n && s->e->status >= 0; i++)
-        if (cloud->area[i] != 0 && !hdi_in_range(cloud->area[i]))
+        else if (cloud->area[i] != 0 && !hdi_in_range(cloud->area[i]))
             hdi_fail_face(s->e, HD_ERR_ARGUMENT, "points: the area of a cell is outside 1e-100 .. 1e100", -1,
                           cloud->name[i], cloud->area[i]);
+    }
     return s->e->status;
 }
 
@@ -16724,11 +16733,6 @@ static double hdi_lambda_bound(const hd_laplacian *lap) {
     return most / hdi_max(lap->b_ratio, 1e-12);
 }
 
-/* The same where it is proven, else HUGE_VAL. */
-static double hdi_lambda_known(const hd_laplacian *lap) {
-    return lap->b_ratio > 0 ? hdi_lambda_bound(lap) : HUGE_VAL;
-}
-
 /* Two bounds may differ by this factor through rounding, after an update that changes nothing. */
 #define HDI_LAMBDA_SLACK (1 + 1e-9)
 
@@ -18536,7 +18540,7 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, 
         hdi_local_fill(l, out, rim, d + 3 * n, *rows + n, fill);
         hdi_local_range(out, &least, &most);
         rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
-        out->lambda_max = hdi_lambda_known(out);
+        out->lambda_max = lap->b_ratio > 0 ? hdi_lambda_bound(out) : HUGE_VAL;
     }
     if (hdi_scope_end(&s) >= 0) return out;
     hdi_laplacian_free(out, ctx);
@@ -23365,8 +23369,7 @@ static hd_laplacian *hdi_lap_new(const hd_laplacian_opts *opts, int32_t n, hd_la
 
 /* Hands out a Laplacian whose pair is there, or after an error frees what there is. */
 static hd_status hdi_lap_end(hd_laplacian **out, hd_laplacian *lap, hd_error *e) {
-    if (e->status >= 0 && hdi_lap_components(lap, e) >= 0) lap->lambda_max = hdi_lambda_known(lap);
-    if (e->status >= 0) *out = lap;
+    if (e->status >= 0 && hdi_lap_components(lap, e) >= 0) *out = lap;
     else hdi_lap_drop(lap);
     return e->status;
 }
@@ -23519,7 +23522,7 @@ HEATDIFF_API hd_status hd_laplacian_update(hd_laplacian *lap, const hd_mesh *mes
     hdi_refuse(lap->moving && lap->kind == HD_LAPLACIAN_MATRICES,
                "update: matrices of your own take hd_laplacian_update_matrices", c.e);
     xyz = c.e->status < 0 ? NULL : hdi_view_moved(mesh, lap->n, &s);
-    if (c.e->status >= 0 && hdi_lap_update(lap, xyz, c.e) >= 0) lap->lambda_max = hdi_lambda_known(lap);
+    if (c.e->status >= 0) (void)hdi_lap_update(lap, xyz, c.e);
     return hdi_scope_end(&s);
 }
 
@@ -23534,10 +23537,7 @@ HEATDIFF_API hd_status hd_laplacian_update_matrices(hd_laplacian *lap, const hd_
     hdi_refuse(L->n_rows != lap->n || B->n_rows != lap->n || L->n_cols != lap->n || B->n_cols != lap->n,
                "update of matrices: a matrix has another size", c.e);
     if (c.e->status >= 0 && hdi_csr_check(L, c.e) >= 0 && hdi_csr_check(B, c.e) >= 0 &&
-        hdi_pair_replace(lap, L, B, h, c.e) >= 0) {
-        lap->lambda_max = hdi_lambda_known(lap);
-        (void)hdi_lap_components(lap, c.e);
-    }
+        hdi_pair_replace(lap, L, B, h, c.e) >= 0) (void)hdi_lap_components(lap, c.e);
     return c.e->status;
 }
 
