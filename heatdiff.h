@@ -12280,11 +12280,11 @@ enum {
     HDI_FIT_LINEAR = 400,
     HDI_FIT_FINER = 30,          /* so many times as many measure the error */
     HDI_FIT_JOIN = 400,          /* most points that join the fit */
-    HDI_FIT_ROUNDS = 4,
+    HDI_FIT_ROUNDS = 5,
     HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
     HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2,
     HDI_FIT_FIRST = 16,          /* filters that poles are found for, when several share them, */
-    HDI_FIT_MOST = 20            /* and with those that these poles do not serve */
+    HDI_FIT_MOST = HDI_FIT_FIRST + HDI_FIT_ROUNDS - 1    /* and with those that these poles do not serve */
 };
 /* Poles of several filters are not looked at before their fractions are this close to the tolerance. */
 #define HDI_FIT_CLOSE 100
@@ -12762,11 +12762,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
         const int32_t before = k.n;
         hdi_fit_run(&k, &s);
         worst = hdi_fit_sets(&k, &s, out, c.e);
-        if (count == 1 && (k.n == before || round == HDI_FIT_ROUNDS)) break;
-        if (count == 1) continue;
-        if (worst < 0 || k.count == HDI_FIT_MOST ||
-            hdi_fit_load(&k, k.count, filters + worst, c.e) < 0) break;
-        k.count++;
+        if (round == HDI_FIT_ROUNDS || (count > 1 ? worst < 0 : k.n == before)) break;
+        if (count > 1 && hdi_fit_load(&k, k.count, filters + worst, c.e) >= 0) k.count++;
     }
     (void)hdi_scope_end(&scope);
     return c.e->status < 0 ? c.e->status : worst >= 0 ? HD_WARN_ACCURACY : HD_OK;
