@@ -12289,11 +12289,11 @@ enum {
     HDI_FIT_LINEAR = 400,
     HDI_FIT_FINER = 30,          /* so many times as many measure the error */
     HDI_FIT_JOIN = 400,          /* most points that join the fit */
-    HDI_FIT_ROUNDS = 4,
+    HDI_FIT_ROUNDS = 5,
     HDI_FIT_ABERTH = 100,        /* steps; 10 to 30 are the rule */
     HDI_FIT_ROOM = HDI_FIT_LOG + HDI_FIT_LINEAR + HDI_FIT_JOIN + 2,
     HDI_FIT_FIRST = 16,          /* filters that poles are found for, when several share them, */
-    HDI_FIT_MOST = 20            /* and with those that these poles do not serve */
+    HDI_FIT_MOST = HDI_FIT_FIRST + HDI_FIT_ROUNDS - 1    /* and with those that these poles do not serve */
 };
 /* Poles of several filters are not looked at before their fractions are this close to the tolerance. */
 #define HDI_FIT_CLOSE 100
@@ -12771,11 +12771,8 @@ HEATDIFF_API hd_status hd_rational_fit(hd_rational *out, int32_t count, const hd
         const int32_t before = k.n;
         hdi_fit_run(&k, &s);
         worst = hdi_fit_sets(&k, &s, out, c.e);
-        if (count == 1 && (k.n == before || round == HDI_FIT_ROUNDS)) break;
-        if (count == 1) continue;
-        if (worst < 0 || k.count == HDI_FIT_MOST ||
-            hdi_fit_load(&k, k.count, filters + worst, c.e) < 0) break;
-        k.count++;
+        if (round == HDI_FIT_ROUNDS || (count > 1 ? worst < 0 : k.n == before)) break;
+        if (count > 1 && hdi_fit_load(&k, k.count, filters + worst, c.e) >= 0) k.count++;
     }
     (void)hdi_scope_end(&scope);
     return c.e->status < 0 ? c.e->status : worst >= 0 ? HD_WARN_ACCURACY : HD_OK;
@@ -13050,11 +13047,11 @@ static int32_t hdi_lanczos_most(double t, double lambda_max) {
 /* The state of a Lanczos process in the B inner product. */
 typedef struct hdi_lanczos {
     double *v, *c, *c_old;                /* [n] v_m, B v_m, B v_(m-1) */
-    double *alpha, *beta;                 /* [room + 1] T: diagonal, and beta[j] between j - 1 and j */
-    double *d, *e, *ends, *y;             /* [room + 1], ends [room + 1][2]: first and last of eigenvectors */
-    hd_c64 *work;                         /* [2 room] */
+    double *alpha, *beta;                 /* [most + 1] T: diagonal, and beta[j] between j - 1 and j */
+    double *d, *e, *ends, *y;             /* [most + 1], ends [most + 1][2]: first and last of eigenvectors */
+    hd_c64 *work;                         /* [2 most] */
     double noise;                         /* largest error of a step by rounding, in the B norm */
-    int32_t m, room;                      /* steps: done, at most */
+    int32_t m;                            /* steps done */
 } hdi_lanczos;
 
 /* Further sums of the poles' solutions beside an answer: sum p of Re(weight_p x_p) for n rows of weights,
@@ -13065,18 +13062,14 @@ typedef struct hdi_extra {
     double *sum;
 } hdi_extra;
 
-/* What a lane has room for, beside a field and an answer: steps of Lanczos; systems, which run one after the
- * other, and the vectors that they share. */
-typedef struct hdi_lane_room { int64_t n, n_components; int32_t steps, systems, vectors; } hdi_lane_room;
-
 /* One right-hand side. Arrays are [n] by rows unless said otherwise. */
 typedef struct hdi_lane {
-    hdi_lane_room room;
+    uint64_t size;               /* doubles of its arrays */
     double *f, *rhs, *u;         /* the field, B f, the answer; f begins all arrays */
-    double *tmp;                 /* [4 n], between solves in the vectors of the systems */
+    double *tmp;                 /* [4 n], between solves in the vectors of the systems; then Lanczos */
     double *target, *sums, *spare_sums;  /* [n_components] heat per component, work */
     hd_c64 *b;                   /* begins the systems' arrays */
-    hdi_iteration *k;            /* [systems] */
+    hdi_iteration *k;            /* [systems], after them */
     hdi_lanczos lanczos;
     int32_t skip;
     int exponent;                /* the field is the caller's times 2^-exponent */
@@ -13102,73 +13095,53 @@ typedef struct hdi_lane {
 
 static void hdi_lane_free(hdi_lane *lane, hd_context *ctx) {
     hdi_free(ctx, lane->f);
-    hdi_free(ctx, lane->k);
     memset(lane, 0, sizeof *lane);
 }
 
-static hdi_lane_room hdi_lane_room_of(const hd_laplacian *lap, const hdi_family *fam, int32_t steps,
-                                      int32_t systems) {
-    const hdi_lane_room room = {lap->n_active, lap->n_components, steps, systems,
-                                hdi_iteration_vectors(fam->solver) + hdi_preconds[fam->precond].vectors};
-    return room;
+/* Vectors that systems share: they run one after the other. */
+static int64_t hdi_lane_vectors(const hdi_family *fam) {
+    return hdi_iteration_vectors(fam->solver) + hdi_preconds[fam->precond].vectors;
 }
 
-/* Doubles of the work between solves, which is part of the systems' arrays if there are systems: a
- * right-hand side, vectors, a solution of each, means. The whole of it serves to make preconditioners. */
-static uint64_t hdi_lane_systems_size(const hdi_lane_room *r) {
-    const int64_t all = 2 * ((1 + r->vectors + r->systems) * r->n + r->n_components);
-    return (uint64_t)(r->systems ? all : 4 * r->n);
+/* Doubles of a lane's arrays: a field, its right-hand side, an answer and sums, and work, with so many steps
+ * of Lanczos, or what so many systems take: a right-hand side, vectors, a solution of each, means. The whole
+ * of it serves to make preconditioners. */
+static uint64_t hdi_lane_size(const hd_laplacian *lap, const hdi_family *fam, int32_t steps,
+                              int32_t systems) {
+    const int64_t n = lap->n_active, c = lap->n_components, each = sizeof(hdi_iteration) / sizeof(double) + 1;
+    const int64_t work = systems ? 2 * ((1 + hdi_lane_vectors(fam) + systems) * n + c) + systems * each
+                       : steps ? 7 * n + 11 * ((int64_t)steps + 1) : 4 * n;
+    return (uint64_t)(3 * (n + c) + work);
 }
 
-/* Doubles of a lane's arrays. */
-static uint64_t hdi_lane_size(const hdi_lane_room *r) {
-    const int64_t basis = r->steps > 0 ? 3 * r->n + 11 * ((int64_t)r->steps + 1) : 0;
-    return (uint64_t)(3 * (r->n + r->n_components) + basis) + hdi_lane_systems_size(r);
-}
-
-/* Room as asked for, or more. Where it grows, what the lane held is lost. */
-static hd_status hdi_lane_make(hdi_lane *lane, hdi_lane_room room, hd_context *ctx, hd_error *e) {
-    hdi_lanczos *z = &lane->lanczos;
-    int64_t most;
-    room.steps = hdi_high32(room.steps, lane->room.steps);
-    room.systems = hdi_high32(room.systems, lane->room.systems);
-    if (lane->f && room.steps == lane->room.steps && room.systems == lane->room.systems) return HD_OK;
-    hdi_lane_free(lane, ctx);
-    lane->f = HDI_NEW(ctx, double, hdi_lane_size(&room), e);
-    if (lane->f && room.systems) lane->k = HDI_NEW(ctx, hdi_iteration, room.systems, e);
-    if (e->status < 0) {
+/* Arrays of this size, or more. Where they grow, what the lane held is lost. */
+static hd_status hdi_lane_make(hdi_lane *lane, const hd_laplacian *lap, uint64_t size, hd_context *ctx,
+                               hd_error *e) {
+    const int64_t n = lap->n_active, c = lap->n_components;
+    if (lane->size < size) {
         hdi_lane_free(lane, ctx);
-        return e->status;
+        lane->f = HDI_NEW(ctx, double, size, e);
+        if (!lane->f) return e->status;
+        lane->size = size;
     }
-    lane->room = room;
-    lane->rhs = lane->f + room.n;
-    lane->u = lane->rhs + room.n;
-    lane->target = lane->u + room.n;
-    lane->sums = lane->target + room.n_components;
-    lane->spare_sums = lane->sums + room.n_components;
-    lane->tmp = lane->spare_sums + room.n_components;
+    lane->rhs = lane->f + n;
+    lane->u = lane->rhs + n;
+    lane->target = lane->u + n;
+    lane->sums = lane->target + c;
+    lane->spare_sums = lane->sums + c;
+    lane->tmp = lane->spare_sums + c;
     lane->b = (hd_c64 *)(void *)lane->tmp;
-    most = (int64_t)room.steps + 1;
-    z->room = room.steps;
-    z->v = lane->tmp + hdi_lane_systems_size(&room);
-    z->c = z->v + room.n;
-    z->c_old = z->c + room.n;
-    z->alpha = z->c_old + room.n;
-    z->beta = z->alpha + most;
-    z->d = z->beta + most;
-    z->e = z->d + most;
-    z->ends = z->e + most;
-    z->y = z->ends + 2 * most;
-    z->work = (hd_c64 *)(void *)(z->y + most);
-    if (room.systems) lane->tmp += 6 * room.n;   /* after b and the first two vectors */
     return HD_OK;
 }
 
 /* The systems of a set, and their constants. The preconditioners have their room. */
 static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
     const int32_t own = hdi_iteration_vectors(fam->solver);
-    const int64_t n = lane->room.n;
+    const int64_t n = fam->lap->n_active;
+    hd_c64 *x = lane->b + n * (1 + hdi_lane_vectors(fam)), *mean = x + n * fam->set.n_poles;
     int32_t i, j;
+    lane->tmp = (double *)(void *)(lane->b + 3 * n);
+    lane->k = (hdi_iteration *)(void *)(mean + fam->lap->n_components);
     for (i = 0; i < fam->set.n_poles; i++) {
         hdi_iteration *k = lane->k + i;
         memset(k, 0, sizeof *k);
@@ -13176,8 +13149,8 @@ static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
         k->best = k->r + n;
         for (j = 0; j + 2 < own; j++) k->v[j] = k->best + n * (j + 1);
         k->work = k->r + n * own;
-        k->x = k->r + n * (lane->room.vectors + i);
-        k->mean = k->r + n * (lane->room.vectors + lane->room.systems);
+        k->x = x + n * i;
+        k->mean = mean;
         k->a.lap = fam->lap;
         k->a.t = fam->t;
         k->a.theta = fam->set.theta[i];
@@ -13197,7 +13170,7 @@ static void hdi_lane_systems(hdi_lane *lane, const hdi_family *fam) {
 static void hdi_fill_task(void *arg, int64_t index, int32_t worker) {
     const hdi_lane *lane = (const hdi_lane *)arg;
     (void)worker;
-    hdi_precond_make(&lane->k[index].m, lane->b + index * lane->room.n);
+    hdi_precond_make(&lane->k[index].m, lane->b + index * lane->k->a.lap->n_active);
 }
 
 /* Takes up a set and a time with n lanes: their systems, and the preconditioners, one parallel task each. */
@@ -14227,8 +14200,23 @@ typedef struct hdi_lanczos_task {
     const double *weight, *noise;        /* [n] 1/diag(B); weights of rounding of a product with L */
     double t, tol;
     double drift;                        /* change of a constant in unit time */
-    int32_t max_iterations;
+    int32_t most;                        /* steps */
 } hdi_lanczos_task;
+
+/* The arrays of a process, after 4 n doubles of work. most: steps. */
+static void hdi_lanczos_open(hdi_lane *lane, int64_t n, int64_t most) {
+    hdi_lanczos *z = &lane->lanczos;
+    z->v = lane->tmp + 4 * n;
+    z->c = z->v + n;
+    z->c_old = z->c + n;
+    z->alpha = z->c_old + n;
+    z->beta = z->alpha + most + 1;
+    z->d = z->beta + most + 1;
+    z->e = z->d + most + 1;
+    z->ends = z->e + most + 1;
+    z->y = z->ends + 2 * (most + 1);
+    z->work = (hd_c64 *)(void *)(z->y + most + 1);
+}
 
 /* A start: v of B norm one, c = B v. */
 static void hdi_lanczos_start(hdi_lane *lane, int32_t n, double f0_norm) {
@@ -14318,15 +14306,15 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
     const hd_laplacian *lap = task->lap;
     const double t = task->t, tol = task->tol;
     hdi_lanczos *z = &lane->lanczos;
-    const int32_t most = hdi_low32(task->max_iterations, z->room);
     double bound = 0, best = DBL_MAX;
     int32_t look = 1, best_m = 0;
     hd_rational set;
     if (hdi_rational_get(&set, HD_POLES_UNIFORM, HDI_RAT_UNIFORM_MAX, e) < 0) return e->status;
+    hdi_lanczos_open(lane, lap->n_active, task->most);
     hdi_lanczos_start(lane, lap->n_active, f0_norm);
     for (;;) {
         if (hdi_lanczos_step(task, lane, e) < 0) return e->status;
-        if (z->m < look && z->beta[z->m] > 0 && z->m < most) continue;
+        if (z->m < look && z->beta[z->m] > 0 && z->m < task->most) continue;
         if (hdi_lanczos_bound(z, t, &bound, e) < 0) return e->status;
         hdi_lanczos_coefficients(z, t, &set);
         lane->u_norm = sqrt(fixed_norm2 + f0_norm * f0_norm * hdi_dot(z->y, z->y, z->m));
@@ -14340,7 +14328,7 @@ static hd_status hdi_lanczos_first(const hdi_lanczos_task *task, double f0_norm,
         } else if (best < 1e-10 && z->m > best_m + 20 + z->m / 4) {
             return HD_WARN_ACCURACY;             /* what rounding leaves */
         }
-        if (z->m >= most) {
+        if (z->m >= task->most) {
             hdi_fail(e, HD_ERR_NOT_CONVERGED,
                      "Lanczos did not reach the tolerance in its largest number of steps; use poles");
             e->value = lane->off.solver / lane->u_norm;
@@ -16761,15 +16749,16 @@ static void hdi_heat_free_lanes(hd_heat *heat) {
     heat->n_lanes = 0;
 }
 
-/* Gives the plan n lanes, or leaves it more. Each of the n has this room. */
-static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, hdi_lane_room room, hd_error *e) {
+/* Gives the plan n lanes, or leaves it more. Each of the n has this size. */
+static hd_status hdi_heat_make_lanes(hd_heat *heat, int32_t n, uint64_t size, hd_error *e) {
     int32_t i;
     if (n > heat->n_lanes) {
         hdi_heat_free_lanes(heat);
         heat->lane = (hdi_lane *)hdi_alloc_zero(heat->ctx, (uint64_t)n, sizeof *heat->lane, e);
         heat->n_lanes = heat->lane ? n : 0;
     }
-    for (i = 0; i < n && e->status >= 0; i++) (void)hdi_lane_make(heat->lane + i, room, heat->ctx, e);
+    for (i = 0; i < n && e->status >= 0; i++)
+        (void)hdi_lane_make(heat->lane + i, heat->source, size, heat->ctx, e);
     return e->status;
 }
 
@@ -16917,7 +16906,7 @@ static hd_status hdi_shifted_solve(hd_heat *heat, double t, hd_c64 theta, const 
     set.theta[0] = theta;
     if (hdi_finite_check(&rhs->re, n, 2, -1, "solve: a value of the right-hand side is not finite", e) < 0 ||
         hdi_heat_iterative(heat, e) < 0 ||
-        hdi_heat_make_lanes(heat, 1, hdi_lane_room_of(fam->lap, fam, 0, 1), e) < 0 ||
+        hdi_heat_make_lanes(heat, 1, hdi_lane_size(fam->lap, fam, 0, 1), e) < 0 ||
         hdi_family_prepare(fam, &set, t * heat->scale, heat->lane, 1, e) < 0) return e->status;
     lane = heat->lane;
     b_norm = hdi_shifted_load(fam, rhs, lane, x);
@@ -17147,7 +17136,6 @@ static hd_status hdi_heat_renew(hd_heat *heat, hd_error *e) {
     if (heat->version == lap->version) return HD_OK;
     fill = HDI_TAKE(&s, int64_t, lap->n_active);
     if (!fill) return hdi_scope_end(&s);
-    if (heat->lane && heat->lane->room.n_components != lap->n_components) hdi_heat_free_lanes(heat);
     hdi_heat_measure_pair(heat);
     if (HDI_HAS_DIRECT && heat->elim.ctx) hdi_elim_renew(&heat->elim, lap, fill);
     if (HDI_HAS_DIRECT && heat->few.ctx) hdi_elim_renew(&heat->few, lap, fill);
@@ -17539,11 +17527,11 @@ static void hdi_heat_store(const hdi_heat_call *h, int32_t q, const hdi_lane *la
 /* Makes lanes for the items of the call, at most `most` at a time, with room for steps of Lanczos or
  * systems. */
 static hd_status hdi_heat_lanes(hdi_heat_call *h, int32_t most, int32_t steps, int32_t systems) {
-    const hdi_lane_room room = hdi_lane_room_of(h->lap, &h->heat->fam, steps, systems);
+    const uint64_t size = hdi_lane_size(h->lap, &h->heat->fam, steps, systems);
     hd_heat *heat = h->heat;
     h->n_lanes = hdi_low32(h->ask.k, most);
     /* sums over components take the lane's room for these, which is not in use yet */
-    if (hdi_heat_make_lanes(heat, h->n_lanes, room, h->e) >= 0 && heat->drift < 0)
+    if (hdi_heat_make_lanes(heat, h->n_lanes, size, h->e) >= 0 && heat->drift < 0)
         heat->drift = hdi_heat_drift(heat->source, (hdi_sum *)(void *)heat->lane->target) / heat->scale;
     return h->e->status;
 }
@@ -17599,12 +17587,17 @@ static hd_status hdi_heat_set(hdi_heat_call *h, hd_rational *set) {
     return h->e->status < 0 ? h->e->status : hdi_heat_set_of(h, degree, set);
 }
 
+/* The most steps of Lanczos. Without a bound on the eigenvalues nothing is known of them. */
+static int32_t hdi_heat_steps(const hdi_heat_call *h) {
+    return h->heat->source->b_ratio > 0 ? hdi_lanczos_most(h->t, h->heat->lambda_max) : HDI_LANCZOS_MAX;
+}
+
 static void hdi_heat_task(void *arg, int64_t index, int32_t worker) {
     hdi_heat_call *h = (hdi_heat_call *)arg;
     const hd_heat *heat = h->heat;
     hdi_lane *lane = h->heat->lane + index;
     const hdi_lanczos_task task = {heat->fam.lap, heat->fam.weight, heat->fam.noise_l, h->t, heat->opts.tol,
-                                   heat->drift, heat->opts.max_iterations};
+                                   heat->drift, hdi_low32(heat->opts.max_iterations, hdi_heat_steps(h))};
     const double share = 1.0 / h->ask.k;
     const hdi_watch watch = {worker == 0 ? heat->ctx : NULL, &h->stop, share * (double)(h->batch + index),
                              share, "solve"};
@@ -17804,19 +17797,19 @@ static HDI_COLD void hdi_iterative_cost(hdi_heat_call *h, hd_cost *c) {
     const int lanczos = hdi_heat_solver(h, h->t) == HD_SOLVER_LANCZOS;
     const int32_t poles = o->rational ? o->rational->n_poles : o->degree ? (o->degree + 1) / 2
                           : HDI_POLES_EXPECTED, k = h->ask.k;
-    const hdi_lane_room room = hdi_lane_room_of(lap, &heat->fam,
-                                                lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0,
-                                                lanczos ? 0 : poles);
+    const int32_t steps = lanczos ? hdi_lanczos_most(h->t, heat->lambda_max) : 0;
+    const int32_t systems = lanczos ? 0 : poles;
     int32_t q;
     c->possible = 1;
     for (q = 0; q < h->n_times; q++)
         hdi_steps_cost(heat, hdi_heat_solver(h, h->times[q]), h->times[q], poles, k, c);
-    c->bytes = 8.0 * hdi_low32(k, HDI_LANES_ITERATIVE) * (double)hdi_lane_size(&room);
+    c->bytes = 8.0 * (double)hdi_lane_size(lap, &heat->fam, steps, systems);
+    c->bytes *= hdi_low32(k, HDI_LANES_ITERATIVE);
     if (!heat->fam.weight) {
         c->seconds += HDI_ROW_ANALYSIS / 2 * n;
         c->bytes += nnz * (lap->B ? 22 : 14) + 74 * n + 4.0 * lap->n;
     }
-    c->bytes += 16.0 * room.systems * (double)hdi_precond_size(hdi_preconds + o->precond, lap->n_active,
+    c->bytes += 16.0 * systems * (double)hdi_precond_size(hdi_preconds + o->precond, lap->n_active,
                                                                (int64_t)(nnz - n) / 2);
 }
 
@@ -17842,12 +17835,9 @@ static void hdi_iterative_solve(hdi_heat_call *h, int32_t n, void *arg) {
 
 static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
-    /* without a bound on the eigenvalues nothing is known of the steps */
-    const int known = heat->source->b_ratio > 0;
-    const int32_t steps = known ? hdi_lanczos_most(h->t, heat->lambda_max) : HDI_LANCZOS_MAX;
     hd_rational set;
     if (h->solver == HD_SOLVER_LANCZOS) {
-        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, steps, 0) < 0) return h->e->status;
+        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, hdi_heat_steps(h), 0) < 0) return h->e->status;
     } else {
         if (hdi_heat_set(h, &set) < 0) return h->e->status;
         hdi_report_set(h->rep, &set);
@@ -17893,13 +17883,13 @@ static hdi_batches hdi_batches_of(const hdi_elim *m, int32_t packs, int32_t k) {
 
 /* Bytes that solves of k items with this many packs take beyond what the plan has. */
 static uint64_t hdi_batches_need(const hd_heat *heat, int32_t packs, int32_t k) {
-    const hdi_lane_room room = hdi_lane_room_of(heat->source, &heat->fam, 0, 0);
+    const uint64_t size = hdi_lane_size(heat->source, &heat->fam, 0, 0);
     const hdi_batches b = hdi_batches_of(&heat->elim, packs, hdi_high32(k, 1));
     const int32_t lanes = hdi_low32(k, b.count * b.width);
     hdi_scope s = hdi_scope_counting();
     int32_t i;
     for (i = 0; i < lanes; i++)
-        if (i >= heat->n_lanes || !heat->lane[i].f) (void)HDI_TAKE(&s, double, hdi_lane_size(&room));
+        if (i >= heat->n_lanes || !heat->lane[i].f) (void)HDI_TAKE(&s, double, size);
     if (lanes > heat->n_lanes) s.bytes += (uint64_t)(lanes - heat->n_lanes) * sizeof(hdi_lane);
     if (k > 0 && heat->batch_doubles < b.fresh)  /* in place of the old room */
         (void)HDI_TAKE(&s, double, b.fresh - heat->batch_doubles);

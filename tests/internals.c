@@ -867,11 +867,10 @@ static hd_status int_elim(hdi_elim *m, const hd_laplacian *lap, hd_context *ctx,
 }
 
 static void int_lane(hdi_lane *lane, const hd_laplacian *lap, int32_t r, hd_context *ctx, hd_error *e) {
-    const hdi_lane_room room = {lap->n_active, lap->n_components, 0, 0, 0};
     uint64_t seed = 21;
     int32_t i;
     memset(lane, 0, sizeof *lane);
-    CHECK(hdi_lane_make(lane, room, ctx, e) == HD_OK);
+    CHECK(hdi_lane_make(lane, lap, hdi_lane_size(lap, NULL, 0, 0), ctx, e) == HD_OK);
     for (i = 0; i < lap->n_active; i++) lane->f[i] = r == 0 ? i == 11 : r == 1 ? 1 + sin(0.2 * i) : dense_signed(&seed);
     hdi_pair_apply(lap, 0, 1, lane->f, lane->rhs);
     hdi_heat_measure(lap, lane);
