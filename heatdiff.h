@@ -16540,24 +16540,26 @@ static hdi_parts hdi_share_off(const hdi_spec_sums *a, const hdi_share *g, const
 }
 
 /* Entry v of vector q, or with mass of B times it. */
-static double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t v, int mass) {
+static HDI_INLINE double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t v, int mass) {
     const int64_t at = (int64_t)q * of->s.n;
     if (!mass) return of->s.vector[at + v];
     if (of->bx) return of->bx[at + v];
     return of->s.lap->row[v] < 0 ? 0 : hdi_spec_mass_row(of->s.lap, of->s.vector + at, of->s.lap->row[v]);
 }
 
-/* A value at vertex v with the part of the constants, which does not decay. *off: plus its rounding. */
-static double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double value, double *off) {
+/* The part of the constants in a value at vertex v, or in the square of a distance: it does not decay. *off:
+ * plus its rounding. */
+static HDI_INLINE double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double *off) {
+    double sum = 0;
     int32_t q;
     for (q = 0; q < a->first && !a->power; q++) {
         const double y = hdi_spec_entry(a->of, q, v, a->mass && (a->distance || a->diagonal));
         const double x = a->diagonal ? hdi_spec_entry(a->of, q, v, 0) : a->x[q];
         const double size = !a->distance ? fabs(y * x) : y != x ? fabs(y) + fabs(x) : 0;
-        value = a->distance ? hdi_pythag(value, y - x) : value + y * x;
+        sum += a->distance ? (y - x) * (y - x) : y * x;
         *off += (HDI_NOISE_TERMS * DBL_EPSILON + a->sums_off) * size;
     }
-    return value;
+    return sum;
 }
 
 /* Bounds of the error of value d at vertex v. */
@@ -16568,7 +16570,7 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     hdi_share y = f;
     double beside, all;
     if (!a->distance) off = hdi_share_off(a, &g, &f, d);
-    (void)hdi_spec_still(a, v, 0, &off.rounding);
+    (void)hdi_spec_still(a, v, &off.rounding);
     if (!a->distance) return off;
     hdi_share_add(&y, 1, g);
     if (a->power) {
@@ -16600,16 +16602,19 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
         n = (int32_t)hdi_least(end - v, HDI_SPEC_ROWS);
         memset(sum, 0, (size_t)n * sizeof *sum);
         for (q = a->first; q < of->s.count; q++) {
-            const double *x = of->s.vector + (int64_t)q * of->s.n + v, *other = mass ? y : x;
+            const int64_t begins = (int64_t)q * of->s.n + v;
+            const double *x = of->s.vector + begins, *other = !mass ? x : of->bx ? of->bx + begins : y;
             const double w = a->weight[q], at = a->x[q];
-            for (k = 0; k < n && mass; k++) y[k] = hdi_spec_entry(of, q, (int32_t)v + k, mass);
+            for (k = 0; k < n && other == y; k++) y[k] = hdi_spec_entry(of, q, (int32_t)v + k, mass);
             for (k = 0; k < n && a->distance; k++) sum[k] += w * (other[k] - at) * (other[k] - at);
             for (k = 0; k < n && a->diagonal; k++) sum[k] += w * x[k] * other[k];
             for (k = 0; k < n && !a->distance && !a->diagonal; k++) sum[k] += w * x[k] * at;
         }
         for (k = 0; k < n; k++) {
             const int32_t at = (int32_t)v + k;
-            sum[k] = hdi_spec_still(a, at, hdi_decayed(a, a->distance ? sqrt(sum[k]) : sum[k]), &none);
+            const double still = hdi_spec_still(a, at, &none);
+            sum[k] = hdi_decayed(a, a->distance ? sqrt(sum[k]) : sum[k]);
+            if (still != 0) sum[k] = a->distance ? hdi_pythag(sum[k], sqrt(still)) : sum[k] + still;
             if (a->off) {
                 const hdi_parts off = hdi_spec_off(a, at, sum[k]);
                 a->off[at] = hdi_parts_sum(&off);
