@@ -15362,10 +15362,9 @@ enum {
     HDI_SPEC_HALF = 64,              /* eigenvalues between the last one known and the next shift */
     HDI_SPEC_STEPS = 4,              /* blocks from one look at the projected problem to the next */
     HDI_SPEC_GAPS = 16,              /* pairs beyond those wanted among which a gap is looked for */
-    HDI_SPEC_TRIES = 6,              /* of shifts in a row, and of runs that find nothing */
+    HDI_SPEC_TRIES = 6,              /* of shifts in a row; runs that find nothing and proofs that fail */
     HDI_SPEC_PASSES = 16,            /* most, until a block is orthogonal; two are the rule */
-    HDI_SPEC_IDLE = 40,              /* shifts in a row with nothing below them; the last is 2^780 away */
-    HDI_SPEC_PROOFS = 4              /* shifts that may fail to prove that all is found */
+    HDI_SPEC_IDLE = 40               /* shifts in a row with nothing below them; the last is 2^780 away */
 };
 
 /* Shifts are this part of the mean distance of eigenvalues, or more, away from those known. */
@@ -15452,7 +15451,6 @@ typedef struct hdi_spec {
     double *basis;               /* [room + 1][n][8]; after the run work */
     int32_t n_near, n_blocks, room;
     double lost;                 /* largest column of a block that was dropped */
-    int32_t stuck;               /* Ritz pairs that cannot come nearer for rounding */
     int32_t n_taken;             /* below the shift or, where that is the edge, above it */
     double *own, *couple;        /* [room + 1][8][8] of T: on its diagonal, and below it */
     double *h;                   /* T [8 n_blocks][8 n_blocks], or [room][room + 1][8][8] of blocks */
@@ -15738,16 +15736,15 @@ static double hdi_spec_beyond(const hdi_spec *s, int32_t a, const double *y) {
 
 /* Which pairs of the projected matrix are taken: those that have converged, beyond the edge and below the
  * first one above the shift that has not. What converges is |L x - lambda B x| in the norm of B^-1 that the
- * Ritz vector x will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. stuck: pairs for
- * which it is too large, so that further steps are no use: then the eigenvalue next to the shift is locked,
- * and is not in the way of the next run. y: the last r rows of the eigenvectors, from the last block's on. */
+ * Ritz vector x will have. Rounding is as large as the largest 1/(lambda - sigma) makes it. y: the last r
+ * rows of the eigenvectors, from the last block's on. */
 static void hdi_spec_take_pairs(hdi_spec *s, const double *y, int32_t r) {
     const int32_t m = 8 * s->n_blocks;
     double largest = 0, frontier = HUGE_VAL;
     int32_t i, a;
     for (i = 0; i < m; i++) largest = hdi_max(largest, fabs(s->d[i]));
     largest *= (double)HDI_WIDE * DBL_EPSILON;
-    for (i = s->stuck = 0; i < m; i++, y += r) {
+    for (i = 0; i < m; i++, y += r) {
         const double d = s->d[i];
         double x, most, off = 0;
         s->ritz[i] = HUGE_VAL;
@@ -15757,7 +15754,6 @@ static void hdi_spec_take_pairs(hdi_spec *s, const double *y, int32_t r) {
         for (a = 0; a < HDI_WIDE; a++) off = hdi_pythag(off, hdi_spec_beyond(s, a, y));
         if (off + largest + s->lost <= most) s->ritz[i] = x;
         else if (d > 0) frontier = hdi_min(frontier, x);
-        s->stuck += off <= most && !(off + largest + s->lost <= most);
     }
     for (i = s->n_taken = 0; i < m; i++) {
         if (!(s->ritz[i] > s->edge && s->ritz[i] < frontier)) s->ritz[i] = HUGE_VAL;
@@ -15810,7 +15806,7 @@ static hd_status hdi_spec_lanczos(hdi_spec *s, int32_t wanted, hd_error *e) {
         if (hdi_progress(s->m->ctx, "solve", share, e) < 0) return e->status;
         if (s->n_blocks < look) continue;
         if (hdi_spec_ritz(s, 0, e) < 0) return e->status;
-        if (s->stuck || s->n_taken >= wanted) return HD_OK;
+        if (s->n_taken >= wanted) return HD_OK;
         look = s->n_blocks + HDI_SPEC_STEPS;
     }
     return HD_OK;
@@ -15893,23 +15889,19 @@ static void hdi_spec_polish(hdi_spec *s, const double *value, int32_t first, dou
 }
 
 #define HDI_SPEC_LOST 0.1        /* a residual that is a larger part of its value leaves nothing of it */
-#define HDI_SPEC_TWIN 0.1        /* a vector of which a larger part was found before is not new */
 
 /* Makes block `at`, n columns that are nearly orthonormal, orthonormal and orthogonal to all before it, and
- * enters its pairs, but for those of which much was in blocks before. A pair found twice, with another one
- * missing, would deceive the count of pivots: so columns that depend on each other are noted. */
+ * enters its pairs. A pair found twice, with another one missing, would deceive the count of pivots: so
+ * columns that depend on each other, or on those before, are noted. */
 static void hdi_spec_settle(hdi_spec *s, const double *value, int32_t at, int32_t n) {
-    double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], twin[HDI_WIDE], *x = s->lock[at];
-    int64_t i;
+    double zero[64] = {0}, norm[HDI_WIDE], noise[HDI_WIDE], *x = s->lock[at];
     int32_t r;
     hdi_mass_apply(s->lap, HDI_WIDE, x, s->bw, s->m->ctx);
-    hdi_spec_project(s, s->lock, at, x, twin);
-    for (i = 0; i < 8 * (int64_t)s->n; i++) x[i] = twin[i % 8] > HDI_SPEC_TWIN ? 0 : x[i];
+    hdi_spec_project(s, s->lock, at, x, NULL);
     s->alike |= !(hdi_spec_orthonormal(s, x, zero, zero, zero, NULL) < 0.5);
     (void)hdi_spec_measure(s, value, x, s->basis, norm);
     hdi_wide_dots(x, x, s->noise, s->n, HDI_WIDE, noise);
-    for (r = 0; r < n; r++) {
-        if (twin[r] > HDI_SPEC_TWIN || s->found == s->n) continue;
+    for (r = 0; r < n && s->found < s->n; r++) {
         s->out->n_poor += norm[r] > s->tol * hdi_max(fabs(value[r]), s->unit) + sqrt(noise[r]) ||
                      norm[r] > HDI_SPEC_LOST * fabs(value[r]);
         hdi_spec_enter(s, value[r], norm[r], 8 * at + r);
@@ -16072,10 +16064,9 @@ static double hdi_spec_next(const hdi_spec *s, int32_t failed) {
  * lies far below its shift, so that the next one goes there. */
 static hd_status hdi_spec_move(hdi_spec *s, int32_t failed, hd_error *e) {
     const double step = hdi_spec_spacing(s), apart = HDI_SPEC_NARROW * step;
-    const int32_t low = hdi_spec_rank(s, s->edge), high = hdi_spec_rank(s, s->sigma);
-    const int32_t middle = low + (high - low) / 2, half = hdi_spec_half(s);
-    double at = s->negative <= high ? hdi_spec_next(s, failed)
-                : middle > low ? s->pair[middle].value : 0.5 * (s->edge + s->sigma);
+    const int32_t low = hdi_spec_rank(s, s->edge), half = hdi_spec_half(s);
+    double at = s->negative <= hdi_spec_rank(s, s->sigma) ? hdi_spec_next(s, failed)
+                                                          : 0.5 * (s->edge + s->sigma);
     int32_t tries, i;
     for (tries = 0; tries < HDI_SPEC_TRIES; tries++) {
         double sigma = at, missing;
@@ -16135,21 +16126,19 @@ static hd_status hdi_spec_start(hdi_spec *s, hd_error *e) {
 
 /* All that is wanted; how many these are goes to out. */
 static hd_status hdi_spec_solve(hdi_spec *s, hd_error *e) {
-    int32_t failed = 0, stalls = 0, *proven = &s->out->proven;
+    int32_t failed = 0, *proven = &s->out->proven;
     int all = 0;
     if (hdi_spec_start(s, e) < 0) return e->status;
     *proven = s->found == s->n || s->count <= s->out->n_constant;
-    while (!*proven && failed < HDI_SPEC_PROOFS && stalls < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
+    while (!*proven && failed < HDI_SPEC_TRIES && s->idle < HDI_SPEC_IDLE) {
         const int32_t before = s->found;
         int64_t missing;
         if (hdi_spec_move(s, failed, e) < 0) return e->status;
         missing = s->negative - hdi_spec_rank(s, s->sigma);
-        if (missing > 0) {                       /* a run at the shift */
-            if (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0) return e->status;
-            stalls = s->found > before ? 0 : stalls + 1;
-        }
+        if (missing > 0 && (hdi_spec_lanczos(s, (int32_t)missing, e) < 0 || hdi_spec_lock(s, e) < 0))
+            return e->status;
         s->idle = missing == 0 ? s->idle + 1 : 0;
-        failed += missing < 0;
+        failed += missing < 0 || (missing > 0 && s->found == before);
         if (s->negative == hdi_spec_rank(s, s->sigma)) {
             s->edge = hdi_max(s->edge, s->sigma);
             if (s->negative >= s->count || s->sigma >= s->below) {
@@ -16321,7 +16310,7 @@ HEATDIFF_API hd_status hd_spectrum_create(hd_spectrum **out, const hd_laplacian 
  *         <= exp(-t low) (sum_i |r_i| min(t, 1/(theta_i - low)) |c_i| + m t |R| |c|).
  * So a value is off by no more than exp(-t low) times
  *     (exp(-t (a - low)) + m^2) |Q g| |Q f| + s(c_g) |Q f| + s(c) |Q g| + |c_g| (the last sum).
- * Of vertices sums over |c_i| are taken as |c| times a norm, and |c|^2 = |y|^2 - |Q y|^2. Every term carries
+ * Sums over |c_i| are taken as |c| times a norm, and |c|^2 = |y|^2 - |Q y|^2. Every term carries
  * exp(-t low): errors are small beside distances of 1e-200 as well. For A^-1 and A^-2,
  * A^-1 X - X Theta^-1 = -A^-1 R Theta^-1 and that of their product. */
 
@@ -16353,7 +16342,7 @@ typedef struct hdi_spec_sums {
     double noise, most;          /* of rounding; the largest weight */
     /* for one source */
     double *x;                   /* [count] the source in the vectors */
-    hdi_share from;              /* of the source */
+    hdi_share from, all;         /* of the source; columns: the largest of vertices */
     double sums_off;             /* rounding of sums over it, relative */
     double *column, *off;        /* [n] */
 } hdi_spec_sums;
@@ -16380,7 +16369,7 @@ static void hdi_modes_know(hdi_modes *x) {
 /* Room for the sums. */
 static void hdi_spec_sums_take(hdi_spec_sums *a, const hdi_modes *of, hdi_scope *s) {
     a->of = of;
-    a->x = HDI_TAKE(s, double, 2 * (uint64_t)of->s.count + 1);
+    a->x = HDI_TAKE_ZERO(s, double, 2 * (uint64_t)of->s.count + 1);
     if (a->x) a->weight = a->x + of->s.count;
 }
 
@@ -16461,24 +16450,26 @@ static hdi_parts hdi_share_off(const hdi_spec_sums *a, const hdi_share *g, const
 }
 
 /* Entry v of vector q, or with mass of B times it. */
-static double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t v, int mass) {
+static HDI_INLINE double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t v, int mass) {
     const int64_t at = (int64_t)q * of->s.n;
     if (!mass) return of->s.vector[at + v];
     if (of->bx) return of->bx[at + v];
     return of->s.lap->row[v] < 0 ? 0 : hdi_spec_mass_row(of->s.lap, of->s.vector + at, of->s.lap->row[v]);
 }
 
-/* A value at vertex v with the part of the constants, which does not decay. *off: plus its rounding. */
-static double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double value, double *off) {
+/* The part of the constants in a value at vertex v, or in the square of a distance: it does not decay. *off:
+ * plus its rounding. */
+static HDI_INLINE double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double *off) {
+    double sum = 0;
     int32_t q;
     for (q = 0; q < a->first && !a->power; q++) {
         const double y = hdi_spec_entry(a->of, q, v, a->mass && (a->distance || a->diagonal));
         const double x = a->diagonal ? hdi_spec_entry(a->of, q, v, 0) : a->x[q];
         const double size = !a->distance ? fabs(y * x) : y != x ? fabs(y) + fabs(x) : 0;
-        value = a->distance ? hdi_pythag(value, y - x) : value + y * x;
+        sum += a->distance ? (y - x) * (y - x) : y * x;
         *off += (HDI_NOISE_TERMS * DBL_EPSILON + a->sums_off) * size;
     }
-    return value;
+    return sum;
 }
 
 /* Bounds of the error of value d at vertex v. */
@@ -16489,7 +16480,7 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
     hdi_share y = f;
     double beside, all;
     if (!a->distance) off = hdi_share_off(a, &g, &f, d);
-    (void)hdi_spec_still(a, v, 0, &off.rounding);
+    (void)hdi_spec_still(a, v, &off.rounding);
     if (!a->distance) return off;
     hdi_share_add(&y, 1, g);
     if (a->power) {
@@ -16521,16 +16512,19 @@ static void hdi_spec_sum_task(void *arg, int64_t begin, int64_t end) {
         n = (int32_t)hdi_least(end - v, HDI_SPEC_ROWS);
         memset(sum, 0, (size_t)n * sizeof *sum);
         for (q = a->first; q < of->s.count; q++) {
-            const double *x = of->s.vector + (int64_t)q * of->s.n + v, *other = mass ? y : x;
+            const int64_t begins = (int64_t)q * of->s.n + v;
+            const double *x = of->s.vector + begins, *other = !mass ? x : of->bx ? of->bx + begins : y;
             const double w = a->weight[q], at = a->x[q];
-            for (k = 0; k < n && mass; k++) y[k] = hdi_spec_entry(of, q, (int32_t)v + k, mass);
+            for (k = 0; k < n && other == y; k++) y[k] = hdi_spec_entry(of, q, (int32_t)v + k, mass);
             for (k = 0; k < n && a->distance; k++) sum[k] += w * (other[k] - at) * (other[k] - at);
             for (k = 0; k < n && a->diagonal; k++) sum[k] += w * x[k] * other[k];
             for (k = 0; k < n && !a->distance && !a->diagonal; k++) sum[k] += w * x[k] * at;
         }
         for (k = 0; k < n; k++) {
             const int32_t at = (int32_t)v + k;
-            sum[k] = hdi_spec_still(a, at, hdi_decayed(a, a->distance ? sqrt(sum[k]) : sum[k]), &none);
+            const double still = hdi_spec_still(a, at, &none);
+            sum[k] = hdi_decayed(a, a->distance ? sqrt(sum[k]) : sum[k]);
+            if (still != 0) sum[k] = a->distance ? hdi_pythag(sum[k], sqrt(still)) : sum[k] + still;
             if (a->off) {
                 const hdi_parts off = hdi_spec_off(a, at, sum[k]);
                 a->off[at] = hdi_parts_sum(&off);
@@ -19242,16 +19236,9 @@ static hd_status hdi_late_make(hdi_spec_sums *a, hdi_heat_call *h, int distance,
     return h->e->status;
 }
 
-/* Sums over the pairs for columns, and the largest norms of vertices. */
-typedef struct hdi_fading_sums {
-    hdi_spec_sums a;
-    hdi_share most;
-} hdi_fading_sums;
-
 /* The answer of a lane from the pairs, and its bounds. found, kept: |c|^2 of field and answer. */
 static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
-    hdi_fading_sums *x = (hdi_fading_sums *)arg;
-    hdi_spec_sums *a = &x->a;
+    hdi_spec_sums *a = (hdi_spec_sums *)arg;
     hdi_share *f = &a->from;
     hdi_lane *lane = h->heat->lane;
     const hd_laplacian *lap = h->lap;
@@ -19280,8 +19267,8 @@ static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
     lane->off.solver = hdi_decayed(a, a->inner * f->found + a->mixed * f->left);
     lane->off.rounding = hdi_decayed(a, 2 * hdi_ratio_root(lap) * rounding * lane->f_norm + lane->rhs_off) +
                          8 * (1 + a->depth) * DBL_EPSILON * lane->u_norm;
-    lane->off_value = hdi_share_off(a, &x->most, f, 0);
-    lane->off_value.rounding = x->most.found * lane->off.rounding;
+    lane->off_value = hdi_share_off(a, &a->all, f, 0);
+    lane->off_value.rounding = a->all.found * lane->off.rounding;
     lane->off_m = lane->off;
     lane->rounding = HD_EVIDENCE_ESTIMATED;
 }
@@ -19290,22 +19277,21 @@ static void hdi_fading_solve(hdi_heat_call *h, int32_t n, void *arg) {
 static hd_status hdi_fading_answer(hdi_task *task) {
     hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_fading_sums x;
+    hdi_spec_sums a;
     int32_t v;
-    memset(&x, 0, sizeof x);
     h->lap = h->heat->source;
     h->by_pairs = 1;
     h->method = HD_METHOD_DIRECT;
     h->solver = HD_SOLVER_AUTO;
-    if (hdi_late_make(&x.a, h, 0, 0, &s) >= 0) x.a.column = HDI_TAKE(&s, double, h->lap->n);
+    if (hdi_late_make(&a, h, 0, 0, &s) >= 0) a.column = HDI_TAKE(&s, double, h->lap->n);
     if (h->e->status >= 0 && hdi_heat_lanes(h, 1, 0, 0) >= 0) {
         for (v = 0; v < h->lap->n; v++) {
-            const hdi_share g = hdi_share_of(&x.a, v, 0);
-            x.most.left = hdi_max(x.most.left, g.left);
-            x.most.found = hdi_max(x.most.found, g.found);
-            x.most.whole = hdi_max(x.most.whole, g.whole);
+            const hdi_share g = hdi_share_of(&a, v, 0);
+            a.all.left = hdi_max(a.all.left, g.left);
+            a.all.found = hdi_max(a.all.found, g.found);
+            a.all.whole = hdi_max(a.all.whole, g.whole);
         }
-        if (hdi_heat_items(h, hdi_fading_solve, &x) >= 0 && h->ask.list)
+        if (hdi_heat_items(h, hdi_fading_solve, &a) >= 0 && h->ask.list)
             hdi_ledger_close(h->ask.list->ledger + h->now, h->rep);
     }
     h->by_pairs = 0;
@@ -20384,10 +20370,7 @@ static hd_status hdi_fading_diagonal(hdi_heat_call *h, int mass, double *out) {
     hdi_ledger ledger = hdi_modes_ledger();
     hdi_spec_sums a;
     int32_t v;
-    hdi_terms none;
-    memset(&none, 0, sizeof none);
     if (hdi_late_make(&a, h, 0, mass, &s) < 0) return hdi_scope_end(&s);
-    hdi_spec_sum_from(&a, &none);
     a.diagonal = 1;
     a.column = out;
     hdi_parallel_ranges(h->heat->ctx, lap->n, 1024, hdi_spec_sum_task, &a);
@@ -20408,11 +20391,8 @@ static void hdi_fading_trace(const hdi_diagonals *to, double t) {
     hdi_parts off = {0, 0, 0, 0};
     double value = 0;
     int32_t q;
-    for (q = 0; q < x->s.count; q++) {
-        const double least = hdi_max(x->low, x->s.value[q] - x->off_norm);
-        value += exp(-t * x->s.value[q]);
-        off.solver += t * x->off_norm * exp(-t * least);
-    }
+    for (q = 0; q < x->s.count; q++) value += exp(-t * x->s.value[q]);
+    off.solver = hdi_bound_times(t * x->off_norm * exp(t * x->off_norm), value);
     if (others > 0) off.rational = others * exp(-t * hdi_max(0, x->s.next));
     off.rounding = 8 * (2 + hdi_min(t * x->low, HDI_EQUAL_BEYOND)) * DBL_EPSILON * value +
                    (4 + x->s.count) * DBL_MIN * DBL_EPSILON;
