@@ -16690,6 +16690,7 @@ struct hd_heat {
     int32_t n_lanes;
     double lambda_max;           /* bound on the largest eigenvalue of B^-1 L */
     double local;                /* mean of the diagonal of B^-1 L: about 4 over squared edge lengths */
+    double b_least, b_most;      /* of b_diag */
     /* how fast a constant would change if row sums were not taken as zero; negative: not known yet */
     double drift;
     int64_t version;             /* of the Laplacian from which all this was made */
@@ -17043,8 +17044,6 @@ typedef struct hdi_local {
     int64_t room;
     /* [n_active] of a row of the source: 1 + its place in at, minus 1 + its number in the rim, 0: neither */
     int32_t *place;
-    double smallest, largest;    /* b_diag of the source in a version of it */
-    int64_t version;
 } hdi_local;
 
 /* A call. It takes a few items at a time, each in a lane. */
@@ -17102,11 +17101,16 @@ static double hdi_heat_scaled(const hd_heat *heat, double t) {
 /* What the plan keeps of the pair as a whole. */
 static void hdi_heat_measure_pair(hd_heat *heat) {
     const hd_laplacian *lap = heat->source;
+    int32_t i;
     heat->version = lap->version;
     heat->scale = hdi_pair_scale(lap);
     heat->lambda_max = (lap->b_ratio > 0 ? lap->lambda_max : hdi_lambda_bound(lap)) / heat->scale;
     heat->local = hdi_steps_local(lap) / heat->scale;
     heat->drift = -1;
+    for (i = 0, heat->b_least = HUGE_VAL, heat->b_most = 0; i < lap->n_active; i++) {
+        heat->b_least = hdi_min(heat->b_least, lap->b_diag[i]);
+        heat->b_most = hdi_max(heat->b_most, lap->b_diag[i]);
+    }
 }
 
 /* The copy of the pair in elimination order with new values; factors are made again. */
@@ -17767,18 +17771,14 @@ static hd_status hdi_heat_store_some(hdi_heat_call *h, int32_t n) {
 
 /* ---- iterative ---- */
 
-/* Lanczos where the choice is free, B needs no solve, and by the model it takes less time for one item.
- * Derivatives go by poles. */
+/* Lanczos where the choice is free, B needs no solve, and so few steps are expected that their eigenproblems
+ * cost little: on 2,500 to 40K rows COCG is faster from about here on. Derivatives go by poles. */
 static hd_solver hdi_heat_solver(const hdi_heat_call *h, double t) {
     const hd_heat *heat = h->heat;
     const hd_heat_opts *o = &heat->opts;
-    hd_cost lanczos = {0, 0, 0, 0, 0, 0}, cocg = lanczos;
     if (o->solver && !(h->rate && o->solver == HD_SOLVER_LANCZOS)) return o->solver;
-    if (h->rate || heat->poles_asked || o->precond != HD_PRECOND_MILDL || heat->source->B)
-        return HD_SOLVER_COCG;
-    hdi_steps_cost(heat, HD_SOLVER_LANCZOS, t, 0, 1, &lanczos);
-    hdi_steps_cost(heat, HD_SOLVER_COCG, t, HDI_POLES_EXPECTED, 1, &cocg);
-    return lanczos.seconds <= cocg.seconds ? HD_SOLVER_LANCZOS : HD_SOLVER_COCG;
+    return h->rate || heat->poles_asked || o->precond != HD_PRECOND_MILDL || heat->source->B ||
+           t * heat->local > heat->source->n_active / 8.0 ? HD_SOLVER_COCG : HD_SOLVER_LANCZOS;
 }
 
 /* The cost of the times one by one. Bytes are those of the copy of the pair, its upper triangle, lanes and
@@ -18063,35 +18063,19 @@ static double hdi_krylov_shift(double from, double first, double last, double la
     return ldexp(1, exponent % 2 == 0 ? exponent : exponent - 1);
 }
 
-/* Windows of times with a factor and a basis each: how many, their steps together, those of the longest. */
-typedef struct hdi_windows { int32_t n; double steps, longest; } hdi_windows;
+/* Times are cut into windows of equal ratio, at most this one, with a factor and a basis each. Smaller ones
+ * take more factors, larger ones more steps. */
+#define HDI_WINDOW_RATIO 200
 
-/* Steps of a basis for times in this ratio, beginning with fields or with answers. It takes some more where
- * other windows go on from its answers. Fitted to runs; fewer are enough at large times. */
-#define HDI_STEPS_HANDED_ON 3
-
-static double hdi_krylov_steps(double ratio, int goes_on) {
-    const double most = 0.9 * (double)HDI_KRYLOV_MAX;
-    return hdi_min(goes_on ? 14 + 1.8 * sqrt(ratio) : 22 + 2.8 * sqrt(ratio), most);
-}
-
-/* The number of windows of equal ratio that costs least. No basis serves beyond a ratio of 1e4; that of all
- * times might overflow. */
-static hdi_windows hdi_krylov_windows(const hdi_heat_call *h, hdi_fill f) {
+/* How many windows, steps of all together, and of the longest basis. Windows after the first go on from
+ * answers and take fewer; the first takes some more then. Fitted to runs; fewer are enough at large times. */
+static int32_t hdi_krylov_windows(const hdi_heat_call *h, double *steps, double *longest) {
     const double span = log(h->times[h->n_times - 1]) - log(hdi_max(h->times[0], 1e-300));
-    const int32_t least = hdi_high32(1, (int32_t)ceil(span / log(1e4)));
-    double best = HUGE_VAL;
-    hdi_windows all = {1, 0, 0}, one;
-    for (one.n = least; one.n < 2 * least + 15; one.n++) {
-        hd_cost c = {0, 0, 0, 0, 0, 0};
-        one.longest = hdi_krylov_steps(exp(span / one.n), 0) + (one.n > 1 ? HDI_STEPS_HANDED_ON : 0);
-        one.steps = one.longest + (one.n - 1) * hdi_krylov_steps(exp(span / one.n), 1);
-        hdi_fill_cost(f, 1, one.n, one.steps, 0, &c);
-        if (c.seconds >= best) continue;
-        best = c.seconds;
-        all = one;
-    }
-    return all;
+    const int32_t n = hdi_high32(1, (int32_t)ceil(span / log(HDI_WINDOW_RATIO)));
+    const double root = exp(span / n / 2);       /* of the ratio */
+    *longest = 22 + 2.8 * root + (n > 1 ? 3 : 0);
+    *steps = *longest + (n - 1) * (14 + 1.8 * root);
+    return n;
 }
 
 /* The analysis of this method. For few columns it is that of a minimum degree order: finding and analysing it
@@ -18118,19 +18102,19 @@ static HDI_COLD void hdi_krylov_cost(hdi_heat_call *h, hd_cost *c) {
     const hd_heat *heat = h->heat;
     const hdi_elim *m = hdi_krylov_elim(h);
     const hdi_fill f = hdi_heat_fill(heat, m);
-    const hdi_windows w = hdi_krylov_windows(h, f);
     const int ready = h->n_times == 1 && m->shifted.ready &&
         m->shift == hdi_krylov_shift(0, h->t, h->t, heat->lambda_max);
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const double steps = h->ask.k * w.steps;
-    /* more than expected, to be safe */
-    const double longest = hdi_min(HDI_KRYLOV_MAX, (h->n_times > 1 ? 1.3 : 1.15) * w.longest);
+    double steps, longest;
+    const int32_t windows = hdi_krylov_windows(h, &steps, &longest);
     if (heat->poles_asked) return;
     c->possible = 1;
-    hdi_fill_cost(f, 1, w.n - ready, steps, wide > 1, c);
-    c->seconds += f.analysis + h->n_times * steps / w.n * 8 * f.n / HDI_RATE_BYTES;
+    steps *= h->ask.k;
+    hdi_fill_cost(f, 1, windows - ready, steps, wide > 1, c);
+    c->seconds += f.analysis + h->n_times * steps / windows * 8 * f.n / HDI_RATE_BYTES;
     if (heat->krylov && heat->krylov->m == m && heat->krylov->wide == wide && heat->krylov->v[0] &&
         m->shifted.ctx) return;
+    longest *= h->n_times > 1 ? 1.3 : 1.15;      /* more than expected, to be safe */
     c->bytes = (double)sizeof(hdi_krylov) + 8 * f.n * (wide * (longest + 11) + 10);
     if (!m->shifted.ctx) c->bytes += 8 * f.stored;
     if (h->n_times > 1 && wide == 1) c->bytes += HDI_WIDE * 8 * f.n;   /* sums at several times */
@@ -18247,7 +18231,8 @@ static int hdi_krylov_goes_on(const hdi_heat_call *h, int32_t n, double to) {
 static hd_status hdi_heat_by_krylov(hdi_heat_call *h) {
     hd_heat *heat = h->heat;
     const int32_t wide = h->ask.k > 3 ? HDI_WIDE : 1;
-    const int32_t n_windows = hdi_krylov_windows(h, hdi_heat_fill(heat, h->m)).n;
+    double steps, longest;
+    const int32_t n_windows = hdi_krylov_windows(h, &steps, &longest);
     hdi_krylov *z = heat->krylov;
     int32_t n, w, q0, q1, goes_on;
     if (z && (z->wide != wide || z->m != h->m)) hdi_krylov_free(z, heat->ctx);
@@ -18473,17 +18458,6 @@ static void hdi_local_fill(const hdi_local *l, hd_laplacian *out, hdi_rim *rim, 
     rim->from = id + rim->n_edges;
 }
 
-/* The smallest and the largest entry of B's diagonal. */
-static void hdi_local_range(const hd_laplacian *lap, double *least, double *most) {
-    int32_t i;
-    *least = HUGE_VAL;
-    *most = 0;
-    for (i = 0; i < lap->n_active; i++) {
-        *least = hdi_min(*least, lap->b_diag[i]);
-        *most = hdi_max(*most, lap->b_diag[i]);
-    }
-}
-
 /* The pair of the ball with its rim. If nothing is around it, it is made of whole components, which may
  * conserve heat. *rows: what its vertices are in the source. */
 static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, hd_error *e) {
@@ -18493,7 +18467,7 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, 
     hdi_scope s = hdi_scope_begin(ctx, e), *keep;
     int64_t *fill = HDI_TAKE(&s, int64_t, n + 1);
     hd_laplacian *out = fill ? hdi_lap_shell(ctx, e) : NULL;
-    double least, most, *d;
+    double *d;
     int32_t i;
     if (!out) return (void)hdi_scope_end(&s), out;
     hdi_local_count(l, rim, fill);
@@ -18522,8 +18496,6 @@ static hd_laplacian *hdi_local_pair(hdi_local *l, hdi_rim *rim, int32_t **rows, 
         hdi_fill_own(out->vertex, (int32_t)n);
         memcpy(out->L.row_ptr, fill, (size_t)(n + 1) * sizeof *fill);
         hdi_local_fill(l, out, rim, d + 3 * n, *rows + n, fill);
-        hdi_local_range(out, &least, &most);
-        rim->uneven = sqrt(hdi_max(least / l->smallest, l->largest / most));
         out->lambda_max = lap->b_ratio > 0 ? hdi_lambda_bound(out) : HUGE_VAL;
     }
     if (hdi_scope_end(&s) >= 0) return out;
@@ -18559,11 +18531,8 @@ static hdi_local *hdi_local_open(hd_heat *heat, hd_error *e) {
         if (!l) return NULL;
         l->heat.ctx = heat->ctx;
         l->source = lap;
-        l->version = -1;
         l->place = (int32_t *)(void *)(l + 1);
     }
-    if (l->version != lap->version) hdi_local_range(lap, &l->smallest, &l->largest);
-    l->version = lap->version;
     return l;
 }
 
@@ -18578,6 +18547,7 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
     if (l->ball && l->ball->n == ball->n && memcmp(row, l->row, (size_t)ball->n * sizeof *row) == 0) {
         own->source = own->elim.source = own->few.source = ball;
         own->opts.tol = heat->opts.tol;
+        (void)hdi_heat_renew(own, e);
     } else {
         hdi_local_drop(l);
         own->opts = heat->opts;
@@ -18586,8 +18556,8 @@ static hd_status hdi_local_plan(const hd_heat *heat, hdi_local *l, hd_error *e) 
         own->limit = heat->limit;
         (void)hdi_heat_make(own, ball, e);
     }
-    if (e->status >= 0)
-        (void)hdi_heat_take_sets(own, heat->n_sets, heat->sets, e);
+    if (e->status >= 0) (void)hdi_heat_take_sets(own, heat->n_sets, heat->sets, e);
+    rim.uneven = sqrt(hdi_max(own->b_least / heat->b_least, heat->b_most / own->b_most));
     hdi_laplacian_free(l->ball, heat->ctx);
     l->ball = ball;
     l->row = row;
@@ -18638,12 +18608,8 @@ static double hdi_local_radius(const hd_heat *heat, double edge, double root, do
 
 /* The least number of edges between a source and the rim. B^-1 of a full B falls by a factor of three with
  * each edge where b_ratio is 1/2 (Demko, Moss, Smith 1984). */
-#define HDI_LOCAL_DIGITS 23
-
 static double hdi_local_hops(const hd_heat *heat, double reach) {
-    const double root = sqrt(hdi_max(heat->source->b_ratio, 1e-30) / 2);
-    const double hops = heat->source->B ? HDI_LOCAL_DIGITS / log((1 + root) / (1 - root)) : 6;
-    return (heat->n_sets > 0 ? 1 : reach) * hops;
+    return (heat->n_sets > 0 ? 1 : reach) * (heat->source->B ? 21 : 6);
 }
 
 /* Finds the ball of item q, or that of a row in the middle if items are not known; stops beyond `most`
@@ -18666,7 +18632,8 @@ static hd_status hdi_local_find(hdi_heat_call *h, hdi_local *l, int32_t q, doubl
             if (row >= 0) (void)hdi_local_add(l, row, h->e);
         }
     }
-    if (h->e->status < 0 || l->n == 0) return h->e->status;
+    /* of a source without rows any ball answers zero */
+    if (h->e->status < 0 || (l->n == 0 && hdi_local_add(l, 0, h->e) < 0)) return h->e->status;
     radius = hdi_local_radius(h->heat, hdi_local_edge(lap, l->at[0].row), root, reach);
     return hdi_local_grow(l, radius, hdi_local_hops(h->heat, reach), most, h->e);
 }
@@ -18710,20 +18677,6 @@ static hd_status hdi_local_solve(hdi_heat_call *h, hdi_local *l, int32_t q, doub
     return hdi_heat_end(&in);
 }
 
-/* What item q leaves of a source without rows. */
-static hd_status hdi_local_plain(hdi_heat_call *h, int32_t q) {
-    hdi_lane lane;
-    int32_t m;
-    memset(&lane, 0, sizeof lane);
-    lane.skip = 1;
-    for (m = 0; m < h->n_times && h->e->status >= 0; m++) {
-        h->now = h->time_column ? h->time_column[m] : h->now;
-        hdi_heat_store(h, q, &lane);
-    }
-    if (!h->ask.list) hdi_evidence_worst(&h->rep->evidence_b, HD_EVIDENCE_PROVEN);
-    return h->e->status;
-}
-
 /* Answers item q on a ball that is large enough. */
 static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_report *rep) {
     hd_heat *heat = h->heat;
@@ -18735,7 +18688,6 @@ static hd_status hdi_local_answer(hdi_heat_call *h, hdi_local *l, int32_t q, hd_
     for (tries = 0; tries < HDI_LOCAL_TRIES; tries++) {
         const int last = !automatic && tries + 1 == HDI_LOCAL_TRIES;
         if (hdi_local_find(h, l, q, reach, most) < 0 || l->n > most) break;
-        if (l->n == 0) return hdi_local_plain(h, q);
         if (hdi_local_plan(heat, l, h->e) < 0 ||
             hdi_local_solve(h, l, q, last ? HUGE_VAL : wanted, rep) < 0 || rep->error_local <= wanted)
             return h->e->status;
@@ -18753,7 +18705,7 @@ static hd_status hdi_heat_by_local(hdi_heat_call *h) {
     int32_t q;
     for (q = 0; q < h->ask.k && h->e->status >= 0; q++) {
         if (hdi_progress(h->heat->ctx, "solve", (double)q / h->ask.k, h->e) >= 0 &&
-            hdi_local_answer(h, l, q, &rep) >= 0 && l->n > 0) {
+            hdi_local_answer(h, l, q, &rep) >= 0) {
             if (h->ask.list)                     /* their errors are in its ledgers */
                 rep.error_bound = rep.error_rational = rep.error_local = rep.error_solver =
                     rep.error_rounding = 0;
@@ -18798,7 +18750,7 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     const int32_t most = asked ? lap->n_active : (int32_t)room;
     hdi_local *l;
     hdi_fill f;
-    double n, steps, packs = set ? hdi_high32(1, hdi_set_packs(set)) : 0;
+    double n, steps, longest, packs = set ? hdi_high32(1, hdi_set_packs(set)) : 0;
     if (!hdi_local_can(h) || (!asked && lap->n_active < HDI_LOCAL_FROM)) return;
     l = hdi_local_open(h->heat, h->e);
     if (l) (void)hdi_local_find(h, l, 0, hdi_local_reach(h->heat, 1), most);
@@ -18807,7 +18759,7 @@ static HDI_COLD void hdi_local_cost(hdi_heat_call *h, hd_cost *c) {
     if (!c->possible) return;
     n = hdi_item_fields(h->ask.item) && !h->ask.F ? lap->n_active : l->n;
     f = hdi_fill_guess(n, n * (double)lap->L.nnz / lap->n_active);
-    steps = hdi_krylov_windows(h, f).steps + HDI_STEPS_HANDED_ON;
+    (void)hdi_krylov_windows(h, &steps, &longest);
     if (set) hdi_fill_cost(f, HDI_PACK, packs, packs, 0, c);
     else hdi_fill_cost(f, 1, 1, steps, 0, c);
     c->flops *= h->ask.k * (set ? h->n_times : 1);
