@@ -19995,8 +19995,8 @@ typedef struct hdi_inverses {
     int64_t *place;              /* [n] of the diagonal among them; NULL: they are the diagonal */
     hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
     double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
-    hdi_elim_sums of;            /* values as of weight, or of the poles, real and imaginary parts in turn */
-    double *sum;                 /* of poles: [2 of.stride] k and g of the function at hand; else NULL */
+    hdi_elim_sums of;            /* values of the poles, real and imaginary parts in turn */
+    double *sum;                 /* [2 of.stride] k and g of the function at hand */
 } hdi_inverses;
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
@@ -20064,21 +20064,20 @@ static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
     }
 }
 
-/* Factors at the first time, and the values: for each function or, if these are more, for each pole. */
+/* Factors at the first time, and the values. */
 static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *s) {
     hdi_elim *m = &h->heat->elim;
-    const int32_t n_poles = x->set->n_poles, n_sets = 2 * hdi_low32(x->count, hdi_high32(n_poles, 1));
-    const int by_pole = n_sets < 2 * x->count;
+    const int32_t n_poles = x->set->n_poles, n_sets = 2 * n_poles;
     hd_c64 *unit;
     hd_status status;
     int32_t q;
-    x->weight = HDI_TAKE_ZERO(s, hd_c64, (2 * (uint64_t)x->count + (uint64_t)n_sets) * (uint64_t)n_poles);
+    x->weight = HDI_TAKE_ZERO(s, hd_c64, 2 * ((uint64_t)x->count + (uint64_t)n_poles) * (uint64_t)n_poles);
     x->of.n_sets = n_sets;
-    x->of.values = HDI_TAKE_ZERO(s, double, (uint64_t)n_sets * (uint64_t)x->of.stride);
-    if (by_pole) x->sum = HDI_TAKE(s, double, 2 * (uint64_t)x->of.stride);
+    x->of.values = HDI_TAKE_ZERO(s, double, (2 + (uint64_t)n_sets) * (uint64_t)x->of.stride);
     if (h->e->status < 0) return h->e->status;
-    unit = x->weight + 2 * (size_t)x->count * (size_t)n_poles;
-    x->of.weight = by_pole ? unit : x->weight;
+    x->sum = x->of.values + (size_t)n_sets * (size_t)x->of.stride;
+    x->of.weight = unit = x->weight + 2 * (size_t)x->count * (size_t)n_poles;
+    for (q = 0; q < n_sets; q++) unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (x->t) h->t = x->t[0];
     h->set = x->set;
     h->lap = m->lap;
@@ -20087,8 +20086,6 @@ static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *
     h->set = NULL;
     if (status < 0) return status;
     for (q = 0; q < x->count; q++) hdi_inverses_weigh(x, q);
-    for (q = 0; q < n_sets && by_pole; q++)
-        unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
     hdi_elim_invert(m, &m->real, m->lone >= 0, &x->of, h->e);
     hdi_elim_invert(m, m->pack, m->n_used, &x->of, h->e);
@@ -20098,12 +20095,11 @@ static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *
 /* The values of function q: k, or with `bound` g before its factor. */
 static const double *hdi_inverses_get(const hdi_inverses *x, int32_t q, int bound) {
     const int32_t n_poles = x->set->n_poles;
-    const size_t size = (size_t)x->of.stride, row = 2 * (size_t)q + (size_t)bound;
-    const hd_c64 *w = x->weight + row * (size_t)n_poles;
-    double *HDI_RESTRICT sum = x->sum ? x->sum + (bound ? size : 0) : NULL;
+    const size_t size = (size_t)x->of.stride;
+    const hd_c64 *w = x->weight + (2 * (size_t)q + (size_t)bound) * (size_t)n_poles;
+    double *HDI_RESTRICT sum = x->sum + (bound ? size : 0);
     size_t i;
     int32_t p;
-    if (!sum) return x->of.values + row * size;
     memset(sum, 0, size * sizeof *sum);
     for (p = 0; p < n_poles; p++) {
         const double *re = x->of.values + 2 * (size_t)p * size, *im = re + size;
@@ -20470,11 +20466,11 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
 }
 
 /* Diagonals, or with `trace` traces, of all functions of x or, where it is NULL, of the means that are left
- * at the time under way. The report of each time is in one, or the call's. *relative: the largest rational
- * error relative to its value. */
-static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace, hd_report *one,
-                                    double *relative) {
-    hdi_heat_call *h = to->task.h;
+ * at the time under way. The report of each time is in one, or the call's. The task's excess becomes the
+ * largest rational error relative to its value. */
+static hd_status hdi_diagonals_read(hdi_task *task, const hdi_inverses *x, int trace, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const int32_t n = h->heat->elim.sym.n;
     hdi_diagonal d = hdi_diagonal_take(n, trace ? 1 : to->mass, &s);
@@ -20498,28 +20494,33 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
         if (trace) {
             const double value = hdi_trace_read(h, x, q, &d, seen, work, &off);
             hdi_trace_tell(to, ledger, at, value, off, rep);
-            *relative = hdi_max(*relative, hdi_quotient(off.rational, fabs(value)));
+            task->excess = hdi_max(task->excess, hdi_quotient(off.rational, fabs(value)));
         } else {
             double *out = to->D + (size_t)at * to->ldd;
-            *relative = hdi_max(*relative, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
+            task->excess = hdi_max(task->excess, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
         }
     }
     return hdi_scope_end(&s);
 }
 
-/* All that is wanted of the time under way or of the filters, or with t at `count` times by one set of
- * poles. */
-static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double *t, int32_t count,
-                                           hd_report *one, double *relative) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_inverses own, *x = h->equal ? NULL : &own;
+/* All that is wanted of the time under way or of the filters or, with q1 > 0, of times q0 to q1 - 1 of the
+ * call, sorted, by one set of poles. */
+static HDI_COLD hd_status hdi_diagonals_window(hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const int32_t count = q1 > 0 ? q1 - q0 : hdi_high32(heat->n_sets, 1);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    hdi_inverses own, *x = NULL;
+    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&s);
+    hdi_inverse_tell(h);
     h->relative = 1;
-    *relative = 0;
-    if (x && hdi_inverses_take(x, h, t, count, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
-        (void)hdi_inverses_run(h, x, &s);
-    if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 0, one, relative);
-    if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 1, one, relative);
+    if (q1 == 0) h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
+    if (h->e->status >= 0 && !h->equal &&
+        hdi_inverses_take(x = &own, h, q1 > 0 ? h->times + q0 : NULL, count, hdi_diagonals_wanted(to),
+                          HDI_SHARED_TOL, &s) >= 0) (void)hdi_inverses_run(h, x, &s);
+    if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(task, x, 0, one);
+    if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(task, x, 1, one);
     return hdi_scope_end(&s);
 }
 
@@ -20528,17 +20529,12 @@ static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double
  * meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const double limit = hdi_is_plain(heat->source->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
-    const int loose = to->D && to->mass > 0 && heat->source->B != NULL;
-    if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
-    if (h->e->status < 0 ||
-        hdi_diagonals_of(to, NULL, hdi_high32(heat->n_sets, 1), NULL, &task->excess) < 0) return h->e->status;
+    const hd_laplacian *lap = task->h->heat->source;
+    const double limit = hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
+    const int loose = to->D && to->mass > 0 && lap->B;
+    (void)hdi_diagonals_window(task, 0, 0, NULL);
     task->excess /= limit * (loose ? HDI_DIAGONAL_LOOSE : 1);
-    return HD_OK;
+    return task->h->e->status;
 }
 
 /* ---- at many times ---- */
@@ -20560,14 +20556,19 @@ static int32_t hdi_shared_windows(const double *times, int32_t n_times, double t
 }
 
 /* Answers times [q0, q1) of the call, sorted, by one set of poles. */
-typedef hd_status (*hdi_window)(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one);
+typedef hd_status (*hdi_window)(hdi_task *task, int32_t q0, int32_t q1, hd_report *one);
 
-/* The first n times of the call, sorted, with shared poles where that takes fewer packs. */
-static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi_window window, char *done,
+/* The times of the call, times factor, with shared poles where that takes fewer packs. Those where only the
+ * means are left need none, and are left out. */
+static hd_status hdi_shared_run(hdi_task *task, double factor, double tol, hdi_window window, char *done,
                                 hd_report *one) {
-    const hdi_heat_call *h = task->h;
-    const int32_t windows = n > 1 ? hdi_shared_windows(h->times, n, tol) : 0;
-    int32_t w, q0, q1;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    int32_t n, w, q0, q1, windows;
+    if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+        hdi_heat_sort_times(h, factor, done) < 0) return h->e->status;
+    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e);) n--;
+    windows = n > 1 && h->e->status >= 0 ? hdi_shared_windows(h->times, n, tol) : 0;
     for (w = 0, q0 = 0; windows > 0 && q0 < n; w++) {
         q1 = hdi_window_end(h->times, n, q0, w, windows);
         if (window(task, q0, q1, one) < 0) break;
@@ -20576,32 +20577,11 @@ static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi
     return h->e->status;
 }
 
-/* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
-    double relative;
-    return hdi_diagonals_of((const hdi_diagonals *)task, task->h->times + q0, q1 - q0, one, &relative);
-}
-
-/* With shared poles where that takes fewer packs; those where only the means are left need none. The
- * diagonal of K_t with a full B stays alone: its bound may ask for the highest degree. */
+/* The diagonal of K_t with a full B stays alone: its bound may ask for the highest degree. */
 static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *one) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const int alone = to->D && to->mass > 0 && heat->source->B;
-    double relative;
-    int32_t n;
-    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e); n--) {
-        h->now = h->time_column[n - 1];
-        h->equal = 1;
-        done[h->now] = HDI_DONE_FOR_GOOD;
-        if (hdi_diagonals_of(to, NULL, 1, one, &relative) < 0) return h->e->status;
-        h->equal = 0;
-    }
-    if (h->e->status < 0 || !hdi_degree_open(heat) || alone) return h->e->status;
-    return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
+    if (to->D && to->mass > 0 && task->h->heat->source->B) return HD_OK;
+    return hdi_shared_run(task, 1, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
 }
 
 /* ---- heat that fades ---- */
@@ -21821,7 +21801,7 @@ static hd_status hdi_distance_by_pairs(hdi_task *task) {
 
 /* The answer by poles, or by patches and balls: at the time under way or, with q1 > 0, at times q0 to q1 - 1
  * of the call, sorted, which share theirs and whose reports go to one. */
-static HDI_COLD hd_status hdi_distance_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+static HDI_COLD hd_status hdi_distance_window(hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
     const int32_t count = hdi_high32(q1 - q0, 1);
@@ -21933,15 +21913,9 @@ static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x) {
     }
 }
 
-/* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
     const int32_t times = ((const hdi_distances *)task)->of.kind->time;
-    hdi_heat_call *h = task->h;
-    if (!hdi_degree_open(h->heat) || hdi_heat_analysed(h->heat, h->e) < 0 ||
-        hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
-        hdi_heat_equal(h->heat, &h->heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
-        return h->e->status;
-    return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distance_window, done, one);
+    return hdi_shared_run(task, times, HDI_SHARED_DISTANCE_TOL, hdi_distance_window, done, one);
 }
 
 /* ---- pairs ---- */
@@ -22228,27 +22202,16 @@ typedef struct hdi_estimate {
 
 /* Finds what is known of a query. Those for distances are in hdi_distance_rows. */
 static void hdi_estimate_find(hdi_estimate *x, hd_query query) {
-    static const struct { hd_query query; hdi_by by; int32_t mass; } hdi_queries[] = {
-        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0},
-        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 1},
-        {HD_QUERY_TRACE, HDI_BY_INVERSION, 2},   /* perhaps with either diagonal */
-        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 0}
-    };
     size_t q;
-    for (q = 0; q < sizeof hdi_queries / sizeof *hdi_queries; q++) {
-        if (hdi_queries[q].query != query) continue;
-        x->by = hdi_queries[q].by;
-        x->mass = hdi_queries[q].mass;
-    }
+    for (q = 0; q < HDI_DISTANCES; q++)
+        if (hdi_distance_rows[q].query == query) x->of.kind = hdi_distance_rows + q;
+    if (query == HD_QUERY_SPECTRUM) x->by = HDI_BY_SPECTRUM;
+    else if (query >= HD_QUERY_FIELDS && query <= HD_QUERY_PAIRS) x->by = HDI_BY_SOLVES;
+    else if (x->of.kind && !x->of.kind->time) x->by = HDI_BY_GROUND;
+    else if (x->of.kind || (query >= HD_QUERY_DIAGONAL && query <= HD_QUERY_TRACE)) x->by = HDI_BY_INVERSION;
     if (query == HD_QUERY_PAIRS) x->of.kind = hdi_distance_of(HD_DISTANCE_CLASSICAL);
-    for (q = 0; q < HDI_DISTANCES; q++) {
-        if (hdi_distance_rows[q].query != query) continue;
-        x->of.kind = hdi_distance_rows + q;
-        x->by = x->of.kind->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
-    }
+    if (query == HD_QUERY_DIAGONAL_OPERATOR) x->mass = 1;
+    if (query == HD_QUERY_TRACE) x->mass = 2;    /* perhaps with either diagonal */
 }
 
 /* Checks the query, and its times if it has some. */
@@ -22277,7 +22240,7 @@ static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int3
     const hdi_heat_call *h = x->of.task.h;
     const hd_laplacian *lap = h->heat->source;
     const hdi_distance_row *kind = x->of.kind;
-    const int32_t k = h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
+    const int32_t k = h->ask.k, sums = 2 * set->n_poles;
     const int forms = kind && hdi_metric_wanted(h->heat, kind) == HDI_WANT_FORMS;
     const double n = lap->n_active, entries = (double)(lap->L.nnz + lap->n_active) / 2;
     double doubles = 6 * n + count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
@@ -22286,7 +22249,7 @@ static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int3
         return;
     }
     /* the values, and a diagonal */
-    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->mass && lap->B ? entries : n);
+    doubles += (sums + 2) * (x->mass && lap->B ? entries : n);
     if (kind)                                    /* a metric, and columns of its bound or at all times */
         doubles += 12 * n + 3.0 * lap->n + 6.0 * k + (count > 1 ? 2.0 * count : hdi_min(k, HDI_LANES)) * n;
     hdi_direct_set(h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
