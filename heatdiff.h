@@ -669,8 +669,8 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
-     * distances; 2 h^2 often suits irregular triangles and points better. */
+    /* How long heat flows, unit length^2, 1e-100 to 1e100; default: see t_in_h2. Larger values give smoother,
+     * less accurate distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, of little influence */
     hd_ordering ordering;
@@ -20394,11 +20394,9 @@ static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
 
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hdi_diagonal *d) {
-    const hd_rational *set = d->set;
-    const int exact = !set || (set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 &&
-                               (set->a0 == 0 || !h->heat->source->B));
-    hdi_ledger ledger = hdi_ledger_begin(exact ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
-                                         HD_EVIDENCE_MEASURED, 1);
+    const int exact = !d->set || (hdi_set_uniform(d->set) == 0 && d->left_out == 0);
+    hdi_ledger ledger = hdi_ledger_begin(exact ? HD_EVIDENCE_NONE : hdi_set_evidence(d->set),
+                                         HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
     if (h->left_out > 0) ledger.evidence.local = HD_EVIDENCE_MEASURED;
     return ledger;
 }
@@ -21744,10 +21742,7 @@ static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int3
 }
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const hd_rational *set = x->f.set;
-    const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
-    hdi_ledger ledger = hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
-                                         HD_EVIDENCE_MEASURED, 1);
+    hdi_ledger ledger = hdi_inverse_ledger(x->h, &x->f);
     if (HDI_HAS_MODES && x->modes) return hdi_modes_ledger();
     if (x->local) {
         ledger.evidence.rational = x->local->evidence_rational;
@@ -21757,12 +21752,19 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     return ledger;
 }
 
-/* Distances from source i of those solved for, at the time of function x->q, and what the report says. */
+/* Distances from source i of those solved for to vertices [begin, end), which are all or one, at the time of
+ * function x->q. */
+static void hdi_metric_read(const hdi_metric *x, const hdi_terms *s, int32_t i, int32_t begin, int32_t end,
+                            double *out, hd_report *rep, hdi_ledger *ledger) {
+    if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, *s, begin, end, out, ledger, rep);
+    else hdi_metric_differences(x, s, i, begin, end, out, rep, ledger);
+}
+
+/* Those to all vertices, and what the report says. */
 static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep) {
     hdi_ledger ledger = hdi_metric_ledger(x);
-    if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, *s, 0, x->modes->lap->n, out, &ledger, rep);
-    else hdi_metric_differences(x, s, i, 0, x->h->heat->source->n, out, rep, &ledger);
+    hdi_metric_read(x, s, i, 0, x->h->heat->source->n, out, rep, &ledger);
     hdi_ledger_close(&ledger, rep);
 }
 
@@ -22030,10 +22032,8 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
         const hdi_terms source = hdi_terms_vertex(to->i[q]);
         const int32_t j = to->j[q];
         out[q] = 0;
-        if (source.one == j) continue;
-        if (HDI_HAS_MODES && x->modes) hdi_mode_sum_run(x->modes, source, j, j + 1, d, &ledger, h->rep);
-        else if (source.one == from || hdi_metric_solve(x, &source, 1) >= 0)
-            hdi_metric_differences(x, &source, 0, j, j + 1, d, h->rep, &ledger);
+        if (source.one == j || (source.one != from && hdi_metric_solve(x, &source, 1) < 0)) continue;
+        hdi_metric_read(x, &source, 0, j, j + 1, d, h->rep, &ledger);
         from = source.one;
         out[q] = d[j];
     }
@@ -22681,24 +22681,12 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hdi_sc
     return HD_OK;
 }
 
-/* Masses over t by rows, which are known, into mass [n_active]; then h and t. */
-static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double *mass, hd_error *e) {
-    const double t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
+/* Masses over t by rows, with h and t. */
+static void hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap) {
     int32_t i;
-    if (!hdi_finite(t) || !(t > 0))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length overflows or underflows",
-                            -1, -1, lap->h);
-    for (i = 0; i < g->n_active; i++) {
-        const int32_t from = g->sym.perm[i];
-        mass[i] = hdi_divide(g->copies * lap->mass[from], t);
-        if (!hdi_finite(mass[i]))
-            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
-                                 lap->vertex[from], t);
-    }
     g->h = lap->h;
-    g->t = t;
-    return HD_OK;
+    g->t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
+    for (i = 0; i < g->n_active; i++) g->mass[i] = hdi_divide(g->copies * lap->mass[g->sym.perm[i]], g->t);
 }
 
 /* The arrays over rows, in elimination order, and work of the queries. */
@@ -22725,7 +22713,8 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
     }
     if (lap->holding) g->held = HDI_TAKE(own, char, g->n_active);
     for (i = 0; i < g->n_active && g->held; i++) g->held[i] = lap->holding->mark[lap->vertex[g->sym.perm[i]]];
-    return own->e->status < 0 ? own->e->status : hdi_geo_masses(g, lap, g->mass, own->e);
+    if (own->e->status >= 0) hdi_geo_masses(g, lap);
+    return own->e->status;
 }
 
 /* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
@@ -22808,9 +22797,11 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 /* Checks the options, and resolves into in what they say about the faces. Returns the option neighbours. */
 static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in, hd_error *e) {
     const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
-    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
-    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
-                     o->t_in_h2, e);
+    hdi_refuse_value(o->t != 0 && !hdi_in_range(o->t),
+                     "geodesic: t is negative or not finite, or outside 1e-100 .. 1e100", o->t, e);
+    hdi_refuse_value(o->t_in_h2 != 0 && !hdi_in_range(o->t_in_h2),
+                     "geodesic: t_in_h2 is negative or not finite, or outside 1e-100 .. 1e100", o->t_in_h2,
+                     e);
     hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
                "geodesic: unknown mass", e);
     hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
@@ -22901,7 +22892,6 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
     const hdi_mesh *moving;
     const double *xyz;
-    double *mass;
     hdi_call c;
     hdi_scope s;
     int32_t f;
@@ -22918,11 +22908,9 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
         if (moving->area[f] == 0)
             hdi_fail_face(c.e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
                           hdi_face_name(moving, f), -1, 0);
-    mass = g->x;
-    if (c.e->status < 0 || hdi_geo_masses(g, g->lap, mass, c.e) < 0) return hdi_scope_end(&s);
+    if (c.e->status < 0) return hdi_scope_end(&s);
     g->ready = 0;
-    g->x = g->mass;
-    g->mass = mass;
+    hdi_geo_masses(g, g->lap);
     hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
     g->ready = hdi_geo_factors(g, g->lap, c.e) >= 0;
