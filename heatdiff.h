@@ -20712,16 +20712,6 @@ typedef struct hdi_patches {
     const char *reason;
 } hdi_patches;
 
-/* The mean length of edges at rows from begin to end, or of the root of t where that is less. */
-static double hdi_patch_edge(const hdi_patches *x, int32_t begin, int32_t end) {
-    const double root = sqrt(x->t);
-    double sum = 0;
-    int32_t i;
-    for (i = begin; i < end; i++)
-        sum += hdi_min(hdi_local_edge(x->to->task.h->heat->source, x->row[i]), root);
-    return sum / (end - begin);
-}
-
 /* Cuts what is to be so many pieces in two, breadth-first from an end, which is the last row found from the
  * first one. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
@@ -20747,13 +20737,16 @@ static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32
 /* Finds a piece with its margin; stops beyond `most` rows. */
 static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
-    const double hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
-    const double radius = hdi_local_radius(h->heat, hdi_patch_edge(x, begin, end), sqrt(x->t), x->reach);
+    const double hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach), root = sqrt(x->t);
+    double edge = 0;                             /* the mean of edges, none longer than the root of t */
     int32_t i;
     hdi_local_clear(x->local);
-    for (i = begin; i < end; i++)
+    for (i = begin; i < end; i++) {
         if (hdi_local_add(x->local, x->row[i], h->e) < 0) return h->e->status;
-    return hdi_local_grow(x->local, HDI_PATCH_REACH * radius, hops, most, h->e);
+        edge += hdi_min(hdi_local_edge(h->heat->source, x->row[i]), root) / (end - begin);
+    }
+    return hdi_local_grow(x->local, HDI_PATCH_REACH * hdi_local_radius(h->heat, edge, root, x->reach), hops,
+                          most, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and much of the patch is margin. Pieces have up to twice as
