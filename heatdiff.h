@@ -670,8 +670,8 @@ typedef enum hd_geodesic_border {
 
 typedef struct hd_geodesic_opts {
     int32_t begin_zero;
-    /* How long heat flows, unit length^2; default: see t_in_h2. Larger values give smoother, less accurate
-     * distances; 2 h^2 often suits irregular triangles and points better. */
+    /* How long heat flows, unit length^2, 1e-100 to 1e100; default: see t_in_h2. Larger values give smoother,
+     * less accurate distances; 2 h^2 often suits irregular triangles and points better. */
     double t;
     hd_geodesic_mass mass;      /* the diagonal of B, of little influence */
     hd_ordering ordering;
@@ -19704,8 +19704,8 @@ typedef struct hdi_inverses {
     int64_t *place;              /* [n] of the diagonal among them; NULL: they are the diagonal */
     hd_c64 *weight;              /* [2 count][n_poles] of k and of g, in turn */
     double *slack;               /* [count] g has to be multiplied by; HUGE_VAL: it is no bound */
-    hdi_elim_sums of;            /* values as of weight, or of the poles, real and imaginary parts in turn */
-    double *sum;                 /* of poles: [2 of.stride] k and g of the function at hand; else NULL */
+    hdi_elim_sums of;            /* values of the poles, real and imaginary parts in turn */
+    double *sum;                 /* [2 of.stride] k and g of the function at hand */
 } hdi_inverses;
 
 static double hdi_inverses_tau(const hdi_inverses *x, int32_t q) { return x->t ? x->t[q] / x->t[0] : 1; }
@@ -19773,21 +19773,20 @@ static void hdi_inverses_weigh(hdi_inverses *x, int32_t q) {
     }
 }
 
-/* Factors at the first time, and the values: for each function or, if these are more, for each pole. */
+/* Factors at the first time, and the values. */
 static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *s) {
     hdi_elim *m = &h->heat->elim;
-    const int32_t n_poles = x->set->n_poles, n_sets = 2 * hdi_low32(x->count, hdi_high32(n_poles, 1));
-    const int by_pole = n_sets < 2 * x->count;
+    const int32_t n_poles = x->set->n_poles, n_sets = 2 * n_poles;
     hd_c64 *unit;
     hd_status status;
     int32_t q;
-    x->weight = HDI_TAKE_ZERO(s, hd_c64, (2 * (uint64_t)x->count + (uint64_t)n_sets) * (uint64_t)n_poles);
+    x->weight = HDI_TAKE_ZERO(s, hd_c64, 2 * ((uint64_t)x->count + (uint64_t)n_poles) * (uint64_t)n_poles);
     x->of.n_sets = n_sets;
-    x->of.values = HDI_TAKE_ZERO(s, double, (uint64_t)n_sets * (uint64_t)x->of.stride);
-    if (by_pole) x->sum = HDI_TAKE(s, double, 2 * (uint64_t)x->of.stride);
+    x->of.values = HDI_TAKE_ZERO(s, double, (2 + (uint64_t)n_sets) * (uint64_t)x->of.stride);
     if (h->e->status < 0) return h->e->status;
-    unit = x->weight + 2 * (size_t)x->count * (size_t)n_poles;
-    x->of.weight = by_pole ? unit : x->weight;
+    x->sum = x->of.values + (size_t)n_sets * (size_t)x->of.stride;
+    x->of.weight = unit = x->weight + 2 * (size_t)x->count * (size_t)n_poles;
+    for (q = 0; q < n_sets; q++) unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (x->t) h->t = x->t[0];
     h->set = x->set;
     h->lap = m->lap;
@@ -19796,8 +19795,6 @@ static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *
     h->set = NULL;
     if (status < 0) return status;
     for (q = 0; q < x->count; q++) hdi_inverses_weigh(x, q);
-    for (q = 0; q < n_sets && by_pole; q++)
-        unit[q * n_poles + q / 2] = q % 2 ? hdi_c(0, -1) : hdi_c(1, 0);
     if (hdi_progress(h->heat->ctx, "invert", 0, h->e) < 0) return h->e->status;
     hdi_elim_invert(m, &m->real, m->lone >= 0, &x->of, h->e);
     hdi_elim_invert(m, m->pack, m->n_used, &x->of, h->e);
@@ -19807,12 +19804,11 @@ static hd_status hdi_inverses_run(hdi_heat_call *h, hdi_inverses *x, hdi_scope *
 /* The values of function q: k, or with `bound` g before its factor. */
 static const double *hdi_inverses_get(const hdi_inverses *x, int32_t q, int bound) {
     const int32_t n_poles = x->set->n_poles;
-    const size_t size = (size_t)x->of.stride, row = 2 * (size_t)q + (size_t)bound;
-    const hd_c64 *w = x->weight + row * (size_t)n_poles;
-    double *HDI_RESTRICT sum = x->sum ? x->sum + (bound ? size : 0) : NULL;
+    const size_t size = (size_t)x->of.stride;
+    const hd_c64 *w = x->weight + (2 * (size_t)q + (size_t)bound) * (size_t)n_poles;
+    double *HDI_RESTRICT sum = x->sum + (bound ? size : 0);
     size_t i;
     int32_t p;
-    if (!sum) return x->of.values + row * size;
     memset(sum, 0, size * sizeof *sum);
     for (p = 0; p < n_poles; p++) {
         const double *re = x->of.values + 2 * (size_t)p * size, *im = re + size;
@@ -20107,11 +20103,9 @@ static hdi_wanted hdi_diagonals_wanted(const hdi_diagonals *to) {
 
 /* The ledger of values found by inversion. */
 static hdi_ledger hdi_inverse_ledger(const hdi_heat_call *h, const hdi_diagonal *d) {
-    const hd_rational *set = d->set;
-    const int exact = !set || (set->kind == HD_POLES_OWN && hdi_set_uniform(set) == 0 &&
-                               (set->a0 == 0 || !h->heat->source->B));
-    hdi_ledger ledger = hdi_ledger_begin(exact ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
-                                         HD_EVIDENCE_MEASURED, 1);
+    const int exact = !d->set || (hdi_set_uniform(d->set) == 0 && d->left_out == 0);
+    hdi_ledger ledger = hdi_ledger_begin(exact ? HD_EVIDENCE_NONE : hdi_set_evidence(d->set),
+                                         HD_EVIDENCE_NONE, HD_EVIDENCE_MEASURED, 1);
     if (h->left_out > 0) ledger.evidence.local = HD_EVIDENCE_MEASURED;
     return ledger;
 }
@@ -20179,11 +20173,11 @@ static double hdi_trace_read(const hdi_heat_call *h, const hdi_inverses *x, int3
 }
 
 /* Diagonals, or with `trace` traces, of all functions of x or, where it is NULL, of the means that are left
- * at the time under way. The report of each time is in one, or the call's. *relative: the largest rational
- * error relative to its value. */
-static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses *x, int trace, hd_report *one,
-                                    double *relative) {
-    hdi_heat_call *h = to->task.h;
+ * at the time under way. The report of each time is in one, or the call's. The task's excess becomes the
+ * largest rational error relative to its value. */
+static hd_status hdi_diagonals_read(hdi_task *task, const hdi_inverses *x, int trace, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
     hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
     const int32_t n = h->heat->elim.sym.n;
     hdi_diagonal d = hdi_diagonal_take(n, trace ? 1 : to->mass, &s);
@@ -20207,28 +20201,33 @@ static hd_status hdi_diagonals_read(const hdi_diagonals *to, const hdi_inverses 
         if (trace) {
             const double value = hdi_trace_read(h, x, q, &d, seen, work, &off);
             hdi_trace_tell(to, ledger, at, value, off, rep);
-            *relative = hdi_max(*relative, hdi_quotient(off.rational, fabs(value)));
+            task->excess = hdi_max(task->excess, hdi_quotient(off.rational, fabs(value)));
         } else {
             double *out = to->D + (size_t)at * to->ldd;
-            *relative = hdi_max(*relative, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
+            task->excess = hdi_max(task->excess, hdi_diagonal_tell(h, &d, ledger, seen, out, rep));
         }
     }
     return hdi_scope_end(&s);
 }
 
-/* All that is wanted of the time under way or of the filters, or with t at `count` times by one set of
- * poles. */
-static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double *t, int32_t count,
-                                           hd_report *one, double *relative) {
-    hdi_heat_call *h = to->task.h;
-    hdi_scope s = hdi_scope_begin(h->heat->ctx, h->e);
-    hdi_inverses own, *x = h->equal ? NULL : &own;
+/* All that is wanted of the time under way or of the filters or, with q1 > 0, of times q0 to q1 - 1 of the
+ * call, sorted, by one set of poles. */
+static HDI_COLD hd_status hdi_diagonals_window(hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+    const hdi_diagonals *to = (const hdi_diagonals *)task;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    const int32_t count = q1 > 0 ? q1 - q0 : hdi_high32(heat->n_sets, 1);
+    hdi_scope s = hdi_scope_begin(heat->ctx, h->e);
+    hdi_inverses own, *x = NULL;
+    if (hdi_heat_analysed(heat, h->e) < 0) return hdi_scope_end(&s);
+    hdi_inverse_tell(h);
     h->relative = 1;
-    *relative = 0;
-    if (x && hdi_inverses_take(x, h, t, count, hdi_diagonals_wanted(to), HDI_SHARED_TOL, &s) >= 0)
-        (void)hdi_inverses_run(h, x, &s);
-    if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 0, one, relative);
-    if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(to, x, 1, one, relative);
+    if (q1 == 0) h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
+    if (h->e->status >= 0 && !h->equal &&
+        hdi_inverses_take(x = &own, h, q1 > 0 ? h->times + q0 : NULL, count, hdi_diagonals_wanted(to),
+                          HDI_SHARED_TOL, &s) >= 0) (void)hdi_inverses_run(h, x, &s);
+    if (to->D && h->e->status >= 0) (void)hdi_diagonals_read(task, x, 0, one);
+    if (to->Z && h->e->status >= 0) (void)hdi_diagonals_read(task, x, 1, one);
     return hdi_scope_end(&s);
 }
 
@@ -20237,17 +20236,12 @@ static HDI_COLD hd_status hdi_diagonals_of(const hdi_diagonals *to, const double
  * meshes tried. */
 static hd_status hdi_diagonals_by_poles(hdi_task *task) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const double limit = hdi_is_plain(heat->source->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
-    const int loose = to->D && to->mass > 0 && heat->source->B != NULL;
-    if (hdi_heat_analysed(heat, h->e) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    h->equal = hdi_heat_equal(heat, &heat->elim, h->t, h->e);
-    if (h->e->status < 0 ||
-        hdi_diagonals_of(to, NULL, hdi_high32(heat->n_sets, 1), NULL, &task->excess) < 0) return h->e->status;
+    const hd_laplacian *lap = task->h->heat->source;
+    const double limit = hdi_is_plain(lap->kind) ? HDI_DIAGONAL_SURE_PLAIN : HDI_DIAGONAL_SURE;
+    const int loose = to->D && to->mass > 0 && lap->B;
+    (void)hdi_diagonals_window(task, 0, 0, NULL);
     task->excess /= limit * (loose ? HDI_DIAGONAL_LOOSE : 1);
-    return HD_OK;
+    return task->h->e->status;
 }
 
 /* ---- at many times ---- */
@@ -20269,14 +20263,19 @@ static int32_t hdi_shared_windows(const double *times, int32_t n_times, double t
 }
 
 /* Answers times [q0, q1) of the call, sorted, by one set of poles. */
-typedef hd_status (*hdi_window)(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one);
+typedef hd_status (*hdi_window)(hdi_task *task, int32_t q0, int32_t q1, hd_report *one);
 
-/* The first n times of the call, sorted, with shared poles where that takes fewer packs. */
-static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi_window window, char *done,
+/* The times of the call, times factor, with shared poles where that takes fewer packs. Those where only the
+ * means are left need none, and are left out. */
+static hd_status hdi_shared_run(hdi_task *task, double factor, double tol, hdi_window window, char *done,
                                 hd_report *one) {
-    const hdi_heat_call *h = task->h;
-    const int32_t windows = n > 1 ? hdi_shared_windows(h->times, n, tol) : 0;
-    int32_t w, q0, q1;
+    hdi_heat_call *h = task->h;
+    hd_heat *heat = h->heat;
+    int32_t n, w, q0, q1, windows;
+    if (!hdi_degree_open(heat) || hdi_heat_analysed(heat, h->e) < 0 ||
+        hdi_heat_sort_times(h, factor, done) < 0) return h->e->status;
+    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e);) n--;
+    windows = n > 1 && h->e->status >= 0 ? hdi_shared_windows(h->times, n, tol) : 0;
     for (w = 0, q0 = 0; windows > 0 && q0 < n; w++) {
         q1 = hdi_window_end(h->times, n, q0, w, windows);
         if (window(task, q0, q1, one) < 0) break;
@@ -20285,32 +20284,11 @@ static hd_status hdi_shared_run(const hdi_task *task, int32_t n, double tol, hdi
     return h->e->status;
 }
 
-/* Times q0 to q1 - 1 of the call, sorted, by one set of poles. */
-static hd_status hdi_diagonals_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
-    double relative;
-    return hdi_diagonals_of((const hdi_diagonals *)task, task->h->times + q0, q1 - q0, one, &relative);
-}
-
-/* With shared poles where that takes fewer packs; those where only the means are left need none. The
- * diagonal of K_t with a full B stays alone: its bound may ask for the highest degree. */
+/* The diagonal of K_t with a full B stays alone: its bound may ask for the highest degree. */
 static hd_status hdi_diagonals_together(hdi_task *task, char *done, hd_report *one) {
     const hdi_diagonals *to = (const hdi_diagonals *)task;
-    hdi_heat_call *h = task->h;
-    hd_heat *heat = h->heat;
-    const int alone = to->D && to->mass > 0 && heat->source->B;
-    double relative;
-    int32_t n;
-    if (hdi_heat_analysed(heat, h->e) < 0 || hdi_heat_sort_times(h, 1, done) < 0) return h->e->status;
-    hdi_inverse_tell(h);
-    for (n = h->n_times; n > 0 && hdi_heat_equal(heat, &heat->elim, h->times[n - 1], h->e); n--) {
-        h->now = h->time_column[n - 1];
-        h->equal = 1;
-        done[h->now] = HDI_DONE_FOR_GOOD;
-        if (hdi_diagonals_of(to, NULL, 1, one, &relative) < 0) return h->e->status;
-        h->equal = 0;
-    }
-    if (h->e->status < 0 || !hdi_degree_open(heat) || alone) return h->e->status;
-    return hdi_shared_run(task, n, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
+    if (to->D && to->mass > 0 && task->h->heat->source->B) return HD_OK;
+    return hdi_shared_run(task, 1, HDI_SHARED_TOL, hdi_diagonals_window, done, one);
 }
 
 /* ---- heat that fades ---- */
@@ -20439,16 +20417,6 @@ typedef struct hdi_patches {
     const char *reason;
 } hdi_patches;
 
-/* The mean length of edges at rows from begin to end, or of the root of t where that is less. */
-static double hdi_patch_edge(const hdi_patches *x, int32_t begin, int32_t end) {
-    const double root = sqrt(x->t);
-    double sum = 0;
-    int32_t i;
-    for (i = begin; i < end; i++)
-        sum += hdi_min(hdi_local_edge(x->to->task.h->heat->source, x->row[i]), root);
-    return sum / (end - begin);
-}
-
 /* Cuts what is to be so many pieces in two, breadth-first from an end, which is the last row found from the
  * first one. Returns where the second begins. */
 static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32_t pieces) {
@@ -20474,13 +20442,16 @@ static int32_t hdi_patch_halve(hdi_patches *x, int32_t begin, int32_t end, int32
 /* Finds a piece with its margin; stops beyond `most` rows. */
 static hd_status hdi_patch_find(hdi_patches *x, int32_t begin, int32_t end, int32_t most) {
     hdi_heat_call *h = x->to->task.h;
-    const double hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach);
-    const double radius = hdi_local_radius(h->heat, hdi_patch_edge(x, begin, end), sqrt(x->t), x->reach);
+    const double hops = HDI_PATCH_HOPS * hdi_local_hops(h->heat, x->reach), root = sqrt(x->t);
+    double edge = 0;                             /* the mean of edges, none longer than the root of t */
     int32_t i;
     hdi_local_clear(x->local);
-    for (i = begin; i < end; i++)
+    for (i = begin; i < end; i++) {
         if (hdi_local_add(x->local, x->row[i], h->e) < 0) return h->e->status;
-    return hdi_local_grow(x->local, HDI_PATCH_REACH * radius, hops, most, h->e);
+        edge += hdi_min(hdi_local_edge(h->heat->source, x->row[i]), root) / (end - begin);
+    }
+    return hdi_local_grow(x->local, HDI_PATCH_REACH * hdi_local_radius(h->heat, edge, root, x->reach), hops,
+                          most, h->e);
 }
 
 /* Halves a piece until factors of its patch fit, and much of the patch is margin. Pieces have up to twice as
@@ -21423,10 +21394,7 @@ static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int3
 }
 
 static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
-    const hd_rational *set = x->f.set;
-    const int none = !set || (hdi_set_uniform(set) == 0 && x->f.left_out == 0);
-    hdi_ledger ledger = hdi_ledger_begin(none ? HD_EVIDENCE_NONE : hdi_set_evidence(set), HD_EVIDENCE_NONE,
-                                         HD_EVIDENCE_MEASURED, 1);
+    hdi_ledger ledger = hdi_inverse_ledger(x->h, &x->f);
     if (HDI_HAS_MODES && x->pairs) return hdi_modes_ledger();
     if (x->local) {
         ledger.evidence.rational = x->local->evidence_rational;
@@ -21436,13 +21404,19 @@ static hdi_ledger hdi_metric_ledger(const hdi_metric *x) {
     return ledger;
 }
 
-/* Distances from source i of those solved for, at the time of function x->q, and what the report says. */
+/* Distances from source i of those solved for to vertices [begin, end), which are all or one, at the time of
+ * function x->q. */
+static void hdi_metric_read(const hdi_metric *x, const hdi_terms *s, int32_t i, int32_t begin, int32_t end,
+                            double *out, hd_report *rep, hdi_ledger *ledger) {
+    if (HDI_HAS_MODES && x->pairs) hdi_spec_distances(x->pairs, s, begin, end, out, ledger, rep);
+    else hdi_metric_differences(x, s, i, begin, end, out, rep, ledger);
+}
+
+/* Those to all vertices, and what the report says. */
 static void hdi_metric_distance(const hdi_metric *x, const hdi_terms *s, int32_t i, double *out,
                                 hd_report *rep) {
     hdi_ledger ledger = hdi_metric_ledger(x);
-    const int32_t n = x->h->heat->source->n;
-    if (HDI_HAS_MODES && x->pairs) hdi_spec_distances(x->pairs, s, 0, n, out, &ledger, rep);
-    else hdi_metric_differences(x, s, i, 0, n, out, rep, &ledger);
+    hdi_metric_read(x, s, i, 0, x->h->heat->source->n, out, rep, &ledger);
     hdi_ledger_close(&ledger, rep);
 }
 
@@ -21477,7 +21451,7 @@ static hd_status hdi_distance_by_pairs(hdi_task *task) {
 
 /* The answer by poles, or by patches and balls: at the time under way or, with q1 > 0, at times q0 to q1 - 1
  * of the call, sorted, which share theirs and whose reports go to one. */
-static HDI_COLD hd_status hdi_distance_window(const hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
+static HDI_COLD hd_status hdi_distance_window(hdi_task *task, int32_t q0, int32_t q1, hd_report *one) {
     const hdi_distance_query *to = (const hdi_distance_query *)task;
     hdi_heat_call *h = task->h;
     const int32_t count = hdi_high32(q1 - q0, 1);
@@ -21589,15 +21563,9 @@ static void hdi_distances_answer(const hdi_distance_query *of, hdi_metric *x) {
     }
 }
 
-/* With shared poles, where that is cheaper than one by one. */
 static hd_status hdi_distances_together(hdi_task *task, char *done, hd_report *one) {
     const int32_t times = ((const hdi_distances *)task)->of.kind->time;
-    hdi_heat_call *h = task->h;
-    if (!hdi_degree_open(h->heat) || hdi_heat_analysed(h->heat, h->e) < 0 ||
-        hdi_heat_sort_times(h, times, done) < 0 || h->n_times < 2 ||
-        hdi_heat_equal(h->heat, &h->heat->elim, h->times[h->n_times - 1], h->e) || h->e->status < 0)
-        return h->e->status;
-    return hdi_shared_run(task, h->n_times, HDI_SHARED_DISTANCE_TOL, hdi_distance_window, done, one);
+    return hdi_shared_run(task, times, HDI_SHARED_DISTANCE_TOL, hdi_distance_window, done, one);
 }
 
 /* ---- pairs ---- */
@@ -21712,10 +21680,8 @@ static HDI_COLD void hdi_pairs_answer(const hdi_distance_query *of, hdi_metric *
         const hdi_terms source = hdi_terms_vertex(to->i[q]);
         const int32_t j = to->j[q];
         out[q] = 0;
-        if (source.one == j) continue;
-        if (HDI_HAS_MODES && x->pairs) hdi_spec_distances(x->pairs, &source, j, j + 1, d, &ledger, h->rep);
-        else if (source.one == from || hdi_metric_solve(x, &source, 1) >= 0)
-            hdi_metric_differences(x, &source, 0, j, j + 1, d, h->rep, &ledger);
+        if (source.one == j || (source.one != from && hdi_metric_solve(x, &source, 1) < 0)) continue;
+        hdi_metric_read(x, &source, 0, j, j + 1, d, h->rep, &ledger);
         from = source.one;
         out[q] = d[j];
     }
@@ -21884,27 +21850,16 @@ typedef struct hdi_estimate {
 
 /* Finds what is known of a query. Those for distances are in hdi_distance_rows. */
 static void hdi_estimate_find(hdi_estimate *x, hd_query query) {
-    static const struct { hd_query query; hdi_by by; int32_t mass; } hdi_queries[] = {
-        {HD_QUERY_FIELDS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_COLUMNS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_PAIRS, HDI_BY_SOLVES, 0},
-        {HD_QUERY_DIAGONAL, HDI_BY_INVERSION, 0},
-        {HD_QUERY_DIAGONAL_OPERATOR, HDI_BY_INVERSION, 1},
-        {HD_QUERY_TRACE, HDI_BY_INVERSION, 2},   /* perhaps with either diagonal */
-        {HD_QUERY_SPECTRUM, HDI_BY_SPECTRUM, 0}
-    };
     size_t q;
-    for (q = 0; q < sizeof hdi_queries / sizeof *hdi_queries; q++) {
-        if (hdi_queries[q].query != query) continue;
-        x->by = hdi_queries[q].by;
-        x->mass = hdi_queries[q].mass;
-    }
+    for (q = 0; q < HDI_DISTANCES; q++)
+        if (hdi_distance_rows[q].query == query) x->of.kind = hdi_distance_rows + q;
+    if (query == HD_QUERY_SPECTRUM) x->by = HDI_BY_SPECTRUM;
+    else if (query >= HD_QUERY_FIELDS && query <= HD_QUERY_PAIRS) x->by = HDI_BY_SOLVES;
+    else if (x->of.kind && !x->of.kind->time) x->by = HDI_BY_GROUND;
+    else if (x->of.kind || (query >= HD_QUERY_DIAGONAL && query <= HD_QUERY_TRACE)) x->by = HDI_BY_INVERSION;
     if (query == HD_QUERY_PAIRS) x->of.kind = hdi_distance_of(HD_DISTANCE_CLASSICAL);
-    for (q = 0; q < HDI_DISTANCES; q++) {
-        if (hdi_distance_rows[q].query != query) continue;
-        x->of.kind = hdi_distance_rows + q;
-        x->by = x->of.kind->time > 0 ? HDI_BY_INVERSION : HDI_BY_GROUND;
-    }
+    if (query == HD_QUERY_DIAGONAL_OPERATOR) x->mass = 1;
+    if (query == HD_QUERY_TRACE) x->mass = 2;    /* perhaps with either diagonal */
 }
 
 /* Checks the query, and its times if it has some. */
@@ -21933,7 +21888,7 @@ static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int3
     const hdi_heat_call *h = x->of.task.h;
     const hd_laplacian *lap = h->heat->source;
     const hdi_distance_row *kind = x->of.kind;
-    const int32_t k = h->ask.k, sums = 2 * hdi_low32(count, set->n_poles);
+    const int32_t k = h->ask.k, sums = 2 * set->n_poles;
     const int forms = kind && hdi_metric_wanted(h->heat, kind) == HDI_WANT_FORMS;
     const double n = lap->n_active, entries = (double)(lap->L.nnz + lap->n_active) / 2;
     double doubles = 6 * n + count * ((double)sizeof *set / 8 + 4.0 * set->n_poles);
@@ -21942,7 +21897,7 @@ static void hdi_estimate_set(const hdi_estimate *x, const hd_rational *set, int3
         return;
     }
     /* the values, and a diagonal */
-    doubles += (sums + (sums < 2.0 * count ? 2 : 0)) * (x->mass && lap->B ? entries : n);
+    doubles += (sums + 2) * (x->mass && lap->B ? entries : n);
     if (kind)                                    /* a metric, and columns of its bound or at all times */
         doubles += 12 * n + 3.0 * lap->n + 6.0 * k + (count > 1 ? 2.0 * count : hdi_min(k, HDI_LANES)) * n;
     hdi_direct_set(h, set, forms ? HDI_AFTER_FORMS : HDI_AFTER_INVERSE, sums, k, x->held + 8 * doubles, c);
@@ -22374,24 +22329,12 @@ static hd_status hdi_geo_poly_faces(hd_geodesic *g, const hdi_mesh *mesh, hdi_sc
     return HD_OK;
 }
 
-/* Masses over t by rows, which are known, into mass [n_active]; then h and t. */
-static hd_status hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap, double *mass, hd_error *e) {
-    const double t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
+/* Masses over t by rows, with h and t. */
+static void hdi_geo_masses(hd_geodesic *g, const hd_laplacian *lap) {
     int32_t i;
-    if (!hdi_finite(t) || !(t > 0))
-        return hdi_fail_row(e, HD_ERR_ARGUMENT,
-                            "geodesic: the square of the mean edge length overflows or underflows",
-                            -1, -1, lap->h);
-    for (i = 0; i < g->n_active; i++) {
-        const int32_t from = g->sym.perm[i];
-        mass[i] = hdi_divide(g->copies * lap->mass[from], t);
-        if (!hdi_finite(mass[i]))
-            return hdi_fail_face(e, HD_ERR_ARGUMENT, "geodesic: t is too small for the mesh", -1,
-                                 lap->vertex[from], t);
-    }
     g->h = lap->h;
-    g->t = t;
-    return HD_OK;
+    g->t = g->t_asked > 0 ? g->t_asked : g->t_in_h2 * (lap->h * lap->h);
+    for (i = 0; i < g->n_active; i++) g->mass[i] = hdi_divide(g->copies * lap->mass[g->sym.perm[i]], g->t);
 }
 
 /* The arrays over rows, in elimination order, and work of the queries. */
@@ -22418,7 +22361,8 @@ static hd_status hdi_geo_rows(hd_geodesic *g, const hd_laplacian *lap, hdi_scope
     }
     if (lap->holding) g->held = HDI_TAKE(own, char, g->n_active);
     for (i = 0; i < g->n_active && g->held; i++) g->held[i] = lap->holding->mark[lap->vertex[g->sym.perm[i]]];
-    return own->e->status < 0 ? own->e->status : hdi_geo_masses(g, lap, g->mass, own->e);
+    if (own->e->status >= 0) hdi_geo_masses(g, lap);
+    return own->e->status;
 }
 
 /* val = L, or with heat L + B/t, by rows of lap, with the rows and columns marked in away, in elimination
@@ -22501,9 +22445,11 @@ static hd_status hdi_geo_store(hd_geodesic *g, const hd_laplacian *lap, const hd
 /* Checks the options, and resolves into in what they say about the faces. Returns the option neighbours. */
 static int32_t hdi_geo_check(const hd_geodesic_opts *o, const hd_mesh *m, hdi_input *in, hd_error *e) {
     const int points = m->shape == HD_POINTS, poly = m->face_ptr != NULL;
-    hdi_refuse_value(!hdi_finite(o->t) || o->t < 0, "geodesic: t is negative or not finite", o->t, e);
-    hdi_refuse_value(!hdi_finite(o->t_in_h2) || o->t_in_h2 < 0, "geodesic: t_in_h2 is negative or not finite",
-                     o->t_in_h2, e);
+    hdi_refuse_value(o->t != 0 && !hdi_in_range(o->t),
+                     "geodesic: t is negative or not finite, or outside 1e-100 .. 1e100", o->t, e);
+    hdi_refuse_value(o->t_in_h2 != 0 && !hdi_in_range(o->t_in_h2),
+                     "geodesic: t_in_h2 is negative or not finite, or outside 1e-100 .. 1e100", o->t_in_h2,
+                     e);
     hdi_refuse(o->mass < HD_GEODESIC_MASS_BARYCENTRIC || o->mass > HD_GEODESIC_MASS_VORONOI,
                "geodesic: unknown mass", e);
     hdi_refuse_ordering(o->ordering, o->perm, "geodesic: unknown ordering", e);
@@ -22594,7 +22540,6 @@ HEATDIFF_API hd_status hd_geodesic_create(hd_geodesic **out, const hd_mesh *mesh
 HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, hd_error *err) {
     const hdi_mesh *moving;
     const double *xyz;
-    double *mass;
     hdi_call c;
     hdi_scope s;
     int32_t f;
@@ -22611,11 +22556,9 @@ HEATDIFF_API hd_status hd_geodesic_update(hd_geodesic *g, const hd_mesh *mesh, h
         if (moving->area[f] == 0)
             hdi_fail_face(c.e, HD_ERR_EMPTY, "geodesic: a face has no area any more",
                           hdi_face_name(moving, f), -1, 0);
-    mass = g->x;
-    if (c.e->status < 0 || hdi_geo_masses(g, g->lap, mass, c.e) < 0) return hdi_scope_end(&s);
+    if (c.e->status < 0) return hdi_scope_end(&s);
     g->ready = 0;
-    g->x = g->mass;
-    g->mass = mass;
+    hdi_geo_masses(g, g->lap);
     hdi_geo_frames(g, moving);
     hdi_geo_factors_free(g, g->ctx);
     g->ready = hdi_geo_factors(g, g->lap, c.e) >= 0;

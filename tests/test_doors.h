@@ -185,6 +185,7 @@ static const door_row door_rows[] = {
     {"geodesic", BAD "t is negative", NULL, "go.t=-1"}, {"geodesic", BAD "t is negative or not finite", NULL, "go.t=nan"},
     {"geodesic", BAD "t_in_h2 is negative", NULL, "go.t_in_h2=-1"},
     {"geodesic", BAD "t_in_h2 is negative or not", NULL, "go.t_in_h2=inf"},
+    {"geodesic", BAD "outside 1e-100 .. 1e100", NULL, "go.t=1e-101; go.t_in_h2=1e101"},
     {"geodesic", BAD "unknown mass", NULL, "go.mass=-1; go.mass=99"},
     {"geodesic", BAD "unknown border", NULL, "go.border=-1; go.border=99"},
     {"geodesic", BAD "stiffening is for", NULL, "go.stiffening=1"},

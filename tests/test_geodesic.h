@@ -511,7 +511,7 @@ static void geo_parts(void) {
 
 /* Slivers, needles, soups: whatever comes out are numbers, zero at the source, not negative. */
 static void geo_ugly_of(shape s, const char *what, int finite) {
-    static const double times[4] = {0, 1e-8, 1e8, 1e-200};
+    static const double times[4] = {0, 1e-8, 1e8, 1e-90};
     const double hh = geo_mean_edge(&s) * geo_mean_edge(&s);
     const int32_t sources[4] = {s.n / 2, 0, s.n - 1, 3};
     double *d = KIT_NEW(double, 4 * s.n);
