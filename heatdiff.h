@@ -1307,11 +1307,14 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_UNROLL
 #endif
 
-/* 1: code is to be small, as gcc -Os says: small tiles, few copies of kernels, none for AVX-512. */
+/* 1: code is to be small, as gcc -Os says: small tiles, few copies of kernels, none for AVX-512. OFTEN is for
+ * functions of some size with many callers, which are then called. */
 #ifdef __OPTIMIZE_SIZE__
 #define HDI_SMALL 1
+#define HDI_OFTEN inline
 #else
 #define HDI_SMALL 0
+#define HDI_OFTEN HDI_INLINE
 #endif
 
 /* What this build has: the text of a macro that is not defined is its name. A room is entered through few
@@ -1458,7 +1461,7 @@ static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + 
 /* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the
  * rounding of one product where exactly zero is right. A result that small is computed again in steps that
  * cannot be fused. */
-static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
+static HDI_OFTEN double hdi_det2(double a, double b, double c, double d) {
     const double x = a * b - c * d;
     volatile double p, q;
     if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
@@ -1483,14 +1486,14 @@ static double hdi_scale(double x, int exponent) {
 
 static double hdi_divide(double a, double b) { return b >= 1 || a <= DBL_MAX * b ? a / b : HUGE_VAL; }
 
-static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
+static HDI_OFTEN void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
     out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
     out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
 }
 
 /* Length without squares that underflow or overflow. */
-static HDI_INLINE double hdi_norm3(const double *a) {
+static HDI_OFTEN double hdi_norm3(const double *a) {
     const double s = hdi_dot3(a, a), m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
     if ((s > 1e-280 && s < 1e280) || m == 0) return sqrt(s);
@@ -1501,7 +1504,7 @@ static HDI_INLINE double hdi_norm3(const double *a) {
 }
 
 /* The distance from point i to point j. */
-static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+static HDI_OFTEN double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
     double edge[3];
     hdi_sub3(hdi_at3(xyz, j), hdi_at3(xyz, i), edge);
     return hdi_norm3(edge);
@@ -4615,7 +4618,7 @@ static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
     return all;
 }
 
-static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
+static HDI_OFTEN int hdi_corners_repeat(const int32_t *v, int64_t k) {
     int64_t c, d;
     for (c = 1; c < k; c++)
         for (d = 0; d < c; d++)
@@ -4706,7 +4709,7 @@ static hd_status hdi_mesh_corners(hdi_mesh *mesh, hdi_scope *s) {
 }
 
 /* The smallest vertex of face f; n: it has no corners. */
-static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f) {
+static HDI_OFTEN int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f) {
     const int32_t *v = mesh->tri + hdi_face_begin(mesh, f);
     int32_t least = mesh->n;
     int64_t k;
@@ -8573,7 +8576,7 @@ static void hdi_sym_sort_kids(hdi_node *node, int32_t v, int64_t *peak, hdi_pair
 /* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
  * the diagonal of a wide panel is not kept. Entries before block q of a panel of m rows and p
  * columns: */
-static HDI_INLINE int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
+static HDI_OFTEN int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
     const int64_t full = q * HDI_PANEL < p ? q : p / HDI_PANEL, rest = q * HDI_PANEL < p ? 0 : p % HDI_PANEL;
     return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
 }
@@ -9222,7 +9225,7 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, int32_t room, do
 }
 
 /* Entry `from` of A, for one matrix or four. row: of a diagonal entry, else -1. */
-static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row,
+static HDI_OFTEN void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row,
                                      double *to) {
     int q;
     if (a->l) {
@@ -9243,7 +9246,7 @@ static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t
  * apart. at: its entry (begin,begin). */
 typedef struct hdi_block { double *at; int64_t begin, width, ld; int32_t entry; } hdi_block;
 
-static HDI_INLINE hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
+static HDI_OFTEN hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
     hdi_block b;
     b.begin = q * HDI_PANEL;
     b.width = hdi_least(p - b.begin, HDI_PANEL);
@@ -9766,7 +9769,7 @@ typedef struct hdi_sweep {
 } hdi_sweep;
 
 /* to[rel[i]] += from[i] for entries [i,end) of w doubles. */
-static HDI_INLINE void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel,
+static HDI_OFTEN void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel,
                                      int64_t i, int64_t end, const double *from) {
     for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
     for (; i < end; i++) o->add(to + w * rel[i], from + w * i, w);
@@ -9924,7 +9927,7 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
 /* Fronts are too short for the processor to see where they lead: fetches as much of the panels as v's own
  * takes, some way ahead. Halves the time of a sweep from memory. Inline, because a compiler leaves out a
  * function without effect. */
-static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {
+static HDI_OFTEN void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {
     enum { AHEAD = 1024, MOST = 8192 };          /* doubles */
     const int64_t *at = f->sym->panel, end = f->width * at[f->sym->n_super];
     const int64_t ahead = (f->width == 1 ? 1 : 2) * (backward ? -AHEAD : AHEAD);
