@@ -1308,6 +1308,16 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_UNROLL
 #endif
 
+/* 1: code is to be small, as gcc -Os says: small tiles, few copies of kernels, none for AVX-512. OFTEN is for
+ * functions of some size with many callers, which are then called. */
+#ifdef __OPTIMIZE_SIZE__
+#define HDI_SMALL 1
+#define HDI_OFTEN inline
+#else
+#define HDI_SMALL 0
+#define HDI_OFTEN HDI_INLINE
+#endif
+
 /* What this build has: the text of a macro that is not defined is its name. A room is entered through few
  * functions. These ask first, and compilers drop whatever nobody reaches any more: all code is checked in
  * every build, and no function has a condition inside. */
@@ -1452,7 +1462,7 @@ static double hdi_dot3(const double *a, const double *b) { return a[0] * b[0] + 
 /* a b - c d with both products rounded. A compiler may contract this to fused multiply-adds, which leaves the
  * rounding of one product where exactly zero is right. A result that small is computed again in steps that
  * cannot be fused. */
-static HDI_INLINE double hdi_det2(double a, double b, double c, double d) {
+static HDI_OFTEN double hdi_det2(double a, double b, double c, double d) {
     const double x = a * b - c * d;
     volatile double p, q;
     if (fabs(x) > 4 * DBL_EPSILON * fabs(a * b)) return x;
@@ -1477,14 +1487,14 @@ static double hdi_scale(double x, int exponent) {
 
 static double hdi_divide(double a, double b) { return b >= 1 || a <= DBL_MAX * b ? a / b : HUGE_VAL; }
 
-static HDI_INLINE void hdi_cross3(const double *a, const double *b, double *out) {
+static HDI_OFTEN void hdi_cross3(const double *a, const double *b, double *out) {
     out[0] = hdi_det2(a[1], b[2], a[2], b[1]);
     out[1] = hdi_det2(a[2], b[0], a[0], b[2]);
     out[2] = hdi_det2(a[0], b[1], a[1], b[0]);
 }
 
 /* Length without squares that underflow or overflow. */
-static HDI_INLINE double hdi_norm3(const double *a) {
+static HDI_OFTEN double hdi_norm3(const double *a) {
     const double s = hdi_dot3(a, a), m = hdi_max(fabs(a[0]), hdi_max(fabs(a[1]), fabs(a[2])));
     double b[3];
     if ((s > 1e-280 && s < 1e280) || m == 0) return sqrt(s);
@@ -1495,7 +1505,7 @@ static HDI_INLINE double hdi_norm3(const double *a) {
 }
 
 /* The distance from point i to point j. */
-static HDI_INLINE double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
+static HDI_OFTEN double hdi_edge_length(const double *xyz, int32_t i, int32_t j) {
     double edge[3];
     hdi_sub3(hdi_at3(xyz, j), hdi_at3(xyz, i), edge);
     return hdi_norm3(edge);
@@ -2256,7 +2266,7 @@ static void hdi_parallel_ranges(hd_context *ctx, int64_t n, int64_t per_task, hd
 static int hdi_simd_best(void) {
 #if HDI_X86
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+    if (!HDI_SMALL && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl"))
         return 2;
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return 1;
@@ -2744,7 +2754,7 @@ static HDI_INLINE void hdi_pack_times(const double *HDI_RESTRICT l, const double
  * multiply-adds. Else, and on x87 registers, single numbers. */
 #define HDI_TARGET_plain
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(__TINYC__) && !defined(HEATDIFF_NO_SIMD) && \
-    (!defined(__i386__) || defined(__SSE2__))
+    (!defined(__i386__) || defined(__SSE2__)) && !(HDI_SMALL && HDI_X86)
 #define HDI_V2 1
 #else
 #define HDI_V2 0
@@ -2770,6 +2780,8 @@ enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 3, hdi_pack
 enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 2 };
 #elif HDI_V2
 enum { hdi_regs_plain = 2, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
+#elif HDI_SMALL
+enum { hdi_regs_plain = 3, hdi_cols_plain = 2, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
 #else
 enum { hdi_regs_plain = 4, hdi_cols_plain = 4, hdi_pack_regs_plain = 2, hdi_pack_cols_plain = 1 };
 #endif
@@ -2836,7 +2848,7 @@ typedef __m256d hdi_vec_avx2;
 typedef __m512d hdi_vec_avx512;
 
 enum {
-    hdi_regs_avx2 = 3, hdi_cols_avx2 = 4, hdi_pack_regs_avx2 = 2, hdi_pack_cols_avx2 = 2,
+    hdi_regs_avx2 = HDI_SMALL ? 2 : 3, hdi_cols_avx2 = 4, hdi_pack_regs_avx2 = 2, hdi_pack_cols_avx2 = 2,
     hdi_most_regs_avx2 = 3, hdi_most_cols_avx2 = 4
 };
 #define HDI_TARGET_avx2 HDI_AVX2
@@ -2933,16 +2945,16 @@ HDI_IN8 __m512d hdi_join_avx512(__m512d p, __m512d q) {
 #define HDI_COLS (pack ? (int)HDI_OF(pack_cols) : (int)HDI_OF(cols))
 #define HDI_NUMBERS (pack ? 4 : 1)
 #define HDI_ABREAST (pack ? HDI_WIDTH < 4 ? HDI_WIDTH : 4 : 1)   /* numbers of an entry that a vector holds */
-/* Code of their own for real columns of B that are side by side, and for each entry of a small triangle. */
-#ifdef __OPTIMIZE_SIZE__
-#define HDI_UNITS 0
+/* Code of their own for real columns of B that are side by side, and for each round of short loops outside
+ * of the inner ones. */
+#define HDI_UNITS (!HDI_SMALL && !pack && (HDI_WIDTH > 2 || !HDI_X86))   /* plain C serves old processors */
+#if HDI_SMALL
 #define HDI_SPREAD
 #else
-#define HDI_UNITS (!pack && (HDI_WIDTH > 2 || !HDI_X86))      /* plain C then serves old processors only */
 #define HDI_SPREAD HDI_UNROLL
 #endif
 #define HDI_EIGHT (8 / HDI_WIDTH < HDI_REGS ? 8 / HDI_WIDTH : HDI_REGS)   /* nums of eight real rows */
-#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 ? 2 : 1)  /* whose sums registers hold */
+#define HDI_RESIDUAL_BLOCKS (HDI_WIDTH == 8 ? 8 : HDI_WIDTH == 4 && !HDI_SMALL ? 2 : 1)   /* see residual */
 #endif
 
 /* What registers hold: a num, some rows of a column; a factor, by which all rows of a num are multiplied; or
@@ -3061,7 +3073,8 @@ HDI_PART void HDI_OF(tile_sum)(const int pack, const int nv, const int nc, const
 HDI_PART void HDI_OF(tile_product)(const int pack, const int nv, const int nc, const int unit,
                                    const HDI_OF(tile) *t, hdi_num (*x)[HDI_OF(most_regs)]) {
     const int whole = HDI_UNITS && !unit, common = nv == HDI_REGS && HDI_WIDTH < 8;   /* 8 have masks */
-    if (pack || whole || (common && t->n == HDI_ROWS * nv)) HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
+    if (whole || HDI_ROWS == 1 || (common && t->n == HDI_ROWS * nv))
+        HDI_OF(tile_sum)(pack, nv, nc, unit, 0, t, x);
     else HDI_OF(tile_sum)(pack, nv, nc, unit, 1, t, x);
 }
 
@@ -3096,7 +3109,7 @@ HDI_PART void HDI_OF(tile_multiply)(const int pack, const int nv, const int nc, 
     int64_t step = t->c_col;
     int j, v;
     HDI_OF(tile_product)(pack, nv, nc, unit, t, x);
-    if (!masked && (t->n < HDI_ROWS * nv || t->diag > 1 - nc)) {
+    if (!masked && ((HDI_ROWS > 1 && t->n < HDI_ROWS * nv) || t->diag > 1 - nc)) {
         HDI_EACH(j, nc)
             HDI_EACH(v, nv)
                 HDI_OF(num_store)(pack, rest + inner * (nv * j + v), HDI_OF(sum_end)(pack, x[j][v]));
@@ -3138,14 +3151,15 @@ HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, con
     const int64_t inner = HDI_ENTRY * HDI_ROWS;
     hdi_num s[HDI_OF(most_cols)][HDI_OF(most_regs)], x[HDI_OF(most_regs)], f;
     const int late = pack && HDI_WIDTH == 8;     /* c is loaded once more */
+    const int whole = HDI_ROWS == 1 ? nv : nv - 1;
     int j, k, v;
     HDI_OF(tile_product)(pack, nv, nc, unit, t, s);
     HDI_EACH(j, nc) {
         const double *c = t->c + j * t->c_col;
         if (j >= t->nc || late) continue;
         HDI_EACH(v, nv) {
-            x[v] = v < nv - 1 ? HDI_OF(num_load)(pack, c + inner * v)
-                              : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
+            x[v] = v < whole ? HDI_OF(num_load)(pack, c + inner * v)
+                             : HDI_OF(num_load_rows)(pack, c + inner * v, g, HDI_ROWS * v);
             s[j][v] = HDI_OF(left_begin)(pack, x[v], s[j][v]);
         }
     }
@@ -3155,7 +3169,7 @@ HDI_PART void HDI_OF(tile_solve)(const int pack, const int nv, const int nc, con
         HDI_EACH(v, nv) {
             x[v] = HDI_OF(left_end)(pack, late ? HDI_OF(num_load)(pack, c + inner * v) : s[j][v], s[j][v]);
             if (dinv) x[v] = HDI_OF(num_times)(pack, x[v], HDI_OF(factor_load)(pack, dinv + HDI_ENTRY * j));
-            if (v < nv - 1) HDI_OF(num_store)(pack, c + inner * v, x[v]);
+            if (v < whole) HDI_OF(num_store)(pack, c + inner * v, x[v]);
             else HDI_OF(num_store_rows)(pack, c + inner * v, x[v], g, HDI_ROWS * v);
         }
         HDI_EACH(k, nc) {
@@ -3386,7 +3400,7 @@ HDI_PART void HDI_OF(residual_end)(const int real, const hdi_residual *g, int64_
     int q, k;
     for (q = 0; real && q < 8; q++)
         if (g->f[q]) f[q] = g->f[q][i];
-    HDI_EACH(k, HDI_VECS) {
+    HDI_SPREAD for (k = 0; k < HDI_VECS; k++) {
         const int at = k * HDI_WIDTH, other = (k + HDI_VECS / 2) % HDI_VECS;
         const hdi_vec v = HDI_OF(load)(x + at), im = HDI_OF(load)(g->im + at);
         hdi_vec z = HDI_OF(load)(g->re + at) * b[k], rest = own * HDI_OF(load)(g->first + at);
@@ -3418,8 +3432,8 @@ HDI_PART void HDI_OF(residual_row)(const int n, const int real, const hdi_residu
     const int64_t last = g->row_ptr[g->end] - 1;
     int64_t p;
     int q, k;
-    HDI_EACH(q, n) {
-        HDI_EACH(k, HDI_VECS) {
+    HDI_SPREAD for (q = 0; q < n; q++) {
+        HDI_SPREAD for (k = 0; k < HDI_VECS; k++) {
             l[q][k] = zero;
             b[q][k] = mass * HDI_OF(load)(own + 8 * q + k * HDI_WIDTH);
         }
@@ -3427,19 +3441,20 @@ HDI_PART void HDI_OF(residual_row)(const int n, const int real, const hdi_residu
     for (p = g->row_ptr[i]; p < g->row_ptr[i + 1] && (g->l || g->b); p++) {
         const double *from = x + g->stride * g->col[p];
         const double *next = x + g->stride * g->col[hdi_least(p + HDI_OF(residual_ahead), last)];
-        HDI_EACH(q, n) HDI_PREFETCH(next + 8 * q);
+        HDI_SPREAD for (q = 0; q < n; q++) HDI_PREFETCH(next + 8 * q);
         const hdi_vec lp = g->l ? HDI_OF(all)(g->l[p]) : zero, bp = g->b ? HDI_OF(all)(g->b[p]) : zero;
-        HDI_EACH(q, n)
-            HDI_EACH(k, HDI_VECS) {
+        HDI_SPREAD for (q = 0; q < n; q++)
+            HDI_SPREAD for (k = 0; k < HDI_VECS; k++) {
                 const hdi_vec v = HDI_OF(load)(from + 8 * q + k * HDI_WIDTH);
                 l[q][k] = HDI_OF(fma)(lp, v, l[q][k]);
                 if (g->b) b[q][k] = HDI_OF(fma)(bp, v, b[q][k]);
             }
     }
-    HDI_EACH(q, n) HDI_OF(residual_end)(real, g, i, r + q, own + 8 * q, l[q], b[q]);
+    HDI_SPREAD for (q = 0; q < n; q++) HDI_OF(residual_end)(real, g, i, r + q, own + 8 * q, l[q], b[q]);
 }
 
 HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
+    const int real = HDI_HAS_POLE_FACTORS ? g->real : 1;
     int64_t i;
     int32_t r;
     for (i = g->begin; i < g->end; i++) {
@@ -3448,15 +3463,15 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
             if (g->f[r]) HDI_PREFETCH_AT(g->f[r], i + 64);
         }
         r = 0;
-        if (HDI_RESIDUAL_BLOCKS > 1 && HDI_HAS_POLE_FACTORS && !g->real)
-            for (; r + HDI_RESIDUAL_BLOCKS <= g->n_blocks; r += HDI_RESIDUAL_BLOCKS)
-                HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
-        if (HDI_RESIDUAL_BLOCKS > 4 && HDI_HAS_POLE_FACTORS && !g->real)
-            for (; r + 4 <= g->n_blocks; r += 4)
-                HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS > 4 ? 4 : 1, 0, g, i, r);
-        if (HDI_HAS_POLE_FACTORS && !g->real)
-            for (; r < g->n_blocks; r++) HDI_OF(residual_row)(1, 0, g, i, r);
-        else HDI_OF(residual_row)(1, 1, g, i, 0);
+        for (; HDI_RESIDUAL_BLOCKS > 1 && !real && r + HDI_RESIDUAL_BLOCKS <= g->n_blocks;
+             r += HDI_RESIDUAL_BLOCKS)
+            HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS, 0, g, i, r);
+        for (; HDI_RESIDUAL_BLOCKS > 4 && !real && r + 4 <= g->n_blocks; r += 4)
+            HDI_OF(residual_row)(HDI_RESIDUAL_BLOCKS > 4 ? 4 : 1, 0, g, i, r);
+        for (; r < g->n_blocks; r++)
+            if (HDI_SMALL) HDI_OF(residual_row)(1, real, g, i, r);
+            else if (real) HDI_OF(residual_row)(1, 1, g, i, r);
+            else HDI_OF(residual_row)(1, 0, g, i, r);
     }
 }
 
@@ -3467,7 +3482,7 @@ HDI_KERNEL void HDI_OF(residual)(const hdi_residual *g) {
 /* Row i of the eight columns from l on; missing ones are the last one again. */
 HDI_PART void HDI_OF(single_columns)(const double **l, const hdi_single *g) {
     int j;
-    HDI_EACH(j, 8) l[j] = g->l + g->nc + (j < g->nc ? j : g->nc - 1) * g->ld;
+    HDI_SPREAD for (j = 0; j < 8; j++) l[j] = g->l + g->nc + (j < g->nc ? j : g->nc - 1) * g->ld;
 }
 
 /* y -= L b for a vector of rows; even columns are summed apart from odd ones. wide: more than four. */
@@ -3502,14 +3517,14 @@ HDI_KERNEL void HDI_OF(single_up)(const hdi_single *g) {
     HDI_SPREAD for (j = 0; j < 8; j++)
         HDI_SPREAD for (k = 0; k < 8; k++)
             if (k > j && k < g->nc) x[k] -= g->l[k + j * g->ld] * x[j];
-    HDI_EACH(j, 8) {
+    HDI_SPREAD for (j = 0; j < 8; j++) {
         v[j] = HDI_OF(all)(x[j]);
         if (j < g->nc) g->x[j] = x[j];
     }
     HDI_OF(single_columns)(l, g);
     for (k = 0; k < 2; k++) {
         HDI_OF(single_up_part)(k ? g->t : g->x + g->nc, l, k ? g->u : g->n, v, g->nc > 4);
-        HDI_EACH(j, 8) l[j] += g->n;
+        HDI_SPREAD for (j = 0; j < 8; j++) l[j] += g->n;
     }
 }
 
@@ -3536,14 +3551,12 @@ HDI_KERNEL void HDI_OF(single_down)(const hdi_single *g) {
     double x[8];
     int i, j, k;
     HDI_OF(single_columns)(l, g);
-    HDI_EACH(j, 8) s[j] = HDI_OF(all)(0);
+    HDI_SPREAD for (j = 0; j < 8; j++) s[j] = HDI_OF(all)(0);
     for (k = 0; k < 2; k++) {
         HDI_OF(single_down_part)(s, l, k ? g->u : g->n, k ? g->t : g->x + g->nc, g->nc > 4);
-        HDI_EACH(j, 8) l[j] += g->n;
+        HDI_SPREAD for (j = 0; j < 8; j++) l[j] += g->n;
     }
-    HDI_EACH(j, 8) {
-        x[j] = j < g->nc ? g->x[j] - HDI_OF(total)(s[j]) : 0;
-    }
+    HDI_SPREAD for (j = 0; j < 8; j++) x[j] = j < g->nc ? g->x[j] - HDI_OF(total)(s[j]) : 0;
     HDI_SPREAD for (i = 0; i < 7; i++) {
         k = 7 - i;
         HDI_SPREAD for (j = 0; j < 8; j++)
@@ -3615,19 +3628,23 @@ static const hdi_kernels *HDI_OF(pack_kernels)(void) {
 #ifdef HDI_SET
 #error "heatdiff.h: HEATDIFF_FILENAME is not the name of this file, which has to include itself"
 #endif
+#if !HDI_SMALL
 #define HDI_SET avx512
 #define HDI_SOLO avx2
 #define HDI_WIDTH 8
 #include HEATDIFF_FILENAME
 #endif
+#endif
 
 /* Kernels of a level: 0 plain C, 1 AVX2, 2 AVX-512; of real numbers, or of packs. Never NULL: a level that
- * was not compiled gives the plain kernels. */
+ * was not compiled gives the best below it. */
 static const hdi_kernels *hdi_kernels_get(int level, int pack) {
     const int packs = HDI_HAS_POLE_FACTORS && pack;
 #if HDI_X86
+#if !HDI_SMALL
     if (level >= 2) return packs ? hdi_pack_kernels_avx512() : hdi_real_kernels_avx512();
-    if (level == 1) return packs ? hdi_pack_kernels_avx2() : hdi_real_kernels_avx2();
+#endif
+    if (level >= 1) return packs ? hdi_pack_kernels_avx2() : hdi_real_kernels_avx2();
 #endif
     (void)level;
     return packs ? hdi_pack_kernels_plain() : hdi_real_kernels_plain();
@@ -4596,7 +4613,7 @@ static hdi_tally hdi_tally_all(const hdi_mesh *mesh, int64_t n) {
     return all;
 }
 
-static HDI_INLINE int hdi_corners_repeat(const int32_t *v, int64_t k) {
+static HDI_OFTEN int hdi_corners_repeat(const int32_t *v, int64_t k) {
     int64_t c, d;
     for (c = 1; c < k; c++)
         for (d = 0; d < c; d++)
@@ -4628,7 +4645,7 @@ static HDI_INLINE double hdi_face_measure(const hdi_mesh *mesh, int32_t f, hdi_t
 }
 
 /* The smallest vertex of face f; n: it has no corners. *bit: one of 64, by its corners in any order. */
-static HDI_INLINE int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f, uint64_t *bit) {
+static HDI_OFTEN int32_t hdi_face_least(const hdi_mesh *mesh, int32_t f, uint64_t *bit) {
     const int32_t *v = mesh->tri + hdi_face_begin(mesh, f);
     int32_t least = mesh->n;
     uint64_t sum = 0;
@@ -7263,39 +7280,6 @@ static void hdi_amd_next_flag(hdi_amd *g, int32_t step) {
     g->flag = anew ? 2 : g->flag + step;
 }
 
-/* For audits. The variables that are left have all the weight and are in the lists of degrees, elements weigh
- * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
-static int hdi_amd_sound(hdi_amd *g) {
-    hdi_amd_node *v = g->v;
-    int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
-    for (i = 0; i < g->n; i++) {
-        int32_t exact = 0, sum = 0;
-        if (v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT) continue;
-        left -= v[i].weight;
-        listed += i < g->inner;
-        hdi_amd_next_flag(g, 1);
-        v[i].mark = g->flag;
-        for (k = 0; k < v[i].len; k++) {
-            const int32_t *e = g->list + v[i].at + k, is_element = k < v[i].elen;
-            const int32_t *l = is_element ? g->list + v[*e].at : e, len = is_element ? v[*e].len : 1;
-            int32_t all = 0;
-            wrong += (v[*e].elen == HDI_AMD_PIVOT) != is_element || (is_element && v[*e].mark == 0);
-            for (q = 0; q < len; q++) {
-                all += v[l[q]].weight;
-                exact += v[l[q]].mark == g->flag ? 0 : v[l[q]].weight;
-                v[l[q]].mark = g->flag;
-            }
-            sum += is_element ? all - v[i].weight : all;
-            wrong += is_element && all != v[*e].degree;
-        }
-        wrong += i < g->inner && (v[i].degree < exact || v[i].degree > sum);
-    }
-    for (k = 0; k <= g->n; k++)
-        for (i = g->head[k]; i >= 0; i = v[i].next, listed--)
-            wrong += v[i].degree != k || k < g->least || v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT;
-    return wrong == 0 && left == 0 && listed == 0;
-}
-
 /* Eliminates variables until the order holds as many as that. */
 static void hdi_amd_run(hdi_amd *g, int32_t until) {
     while (g->done < until) {
@@ -7318,7 +7302,6 @@ static void hdi_amd_run(hdi_amd *g, int32_t until) {
         g->done += pivot->weight;
         g->left -= pivot->weight;
         hdi_amd_restore(g, pivot);
-        if (HDI_AUDIT && me % (g->n / 32 + 1) == 0 && !hdi_amd_sound(g)) HEATDIFF_ASSERT(0);
     }
 }
 
@@ -8603,7 +8586,7 @@ static void hdi_sym_sort_kids(hdi_node *node, int32_t v, int64_t *peak, hdi_pair
 /* Panels come in blocks of at most HDI_PANEL columns, each from its first pivot's row on: what stands above
  * the diagonal of a wide panel is not kept. Entries before block q of a panel of m rows and p
  * columns: */
-static HDI_INLINE int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
+static HDI_OFTEN int64_t hdi_panel_block(int64_t m, int64_t p, int64_t q) {
     const int64_t full = q * HDI_PANEL < p ? q : p / HDI_PANEL, rest = q * HDI_PANEL < p ? 0 : p % HDI_PANEL;
     return HDI_PANEL * (full * m - HDI_PANEL * (full * (full - 1) / 2)) + rest * (m - HDI_PANEL * full);
 }
@@ -9252,7 +9235,7 @@ static hdi_front hdi_front_open(const hdi_factor *f, int32_t v, int32_t room, do
 }
 
 /* Entry `from` of A, for one matrix or four. row: of a diagonal entry, else -1. */
-static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row,
+static HDI_OFTEN void hdi_values_at(const hdi_values *a, int32_t width, int64_t from, int32_t row,
                                      double *to) {
     int q;
     if (a->l) {
@@ -9273,7 +9256,7 @@ static HDI_INLINE void hdi_values_at(const hdi_values *a, int32_t width, int64_t
  * apart. at: its entry (begin,begin). */
 typedef struct hdi_block { double *at; int64_t begin, width, ld; int32_t entry; } hdi_block;
 
-static HDI_INLINE hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
+static HDI_OFTEN hdi_block hdi_block_of(double *panel, int32_t entry, int64_t m, int64_t p, int64_t q) {
     hdi_block b;
     b.begin = q * HDI_PANEL;
     b.width = hdi_least(p - b.begin, HDI_PANEL);
@@ -9796,7 +9779,7 @@ typedef struct hdi_sweep {
 } hdi_sweep;
 
 /* to[rel[i]] += from[i] for entries [i,end) of w doubles. */
-static HDI_INLINE void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel,
+static HDI_OFTEN void hdi_sweep_add(const hdi_kernels *o, int64_t w, double *to, const int32_t *rel,
                                      int64_t i, int64_t end, const double *from) {
     for (; w == 1 && i < end; i++) to[rel[i]] += from[i];
     for (; i < end; i++) o->add(to + w * rel[i], from + w * i, w);
@@ -9954,7 +9937,7 @@ static void hdi_sweep_backward(const hdi_sweep *z, int32_t v, double *y, double 
 /* Fronts are too short for the processor to see where they lead: fetches as much of the panels as v's own
  * takes, some way ahead. Halves the time of a sweep from memory. Inline, because a compiler leaves out a
  * function without effect. */
-static HDI_INLINE void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {
+static HDI_OFTEN void hdi_factor_fetch(const hdi_factor *f, int32_t v, int backward) {
     enum { AHEAD = 1024, MOST = 8192 };          /* doubles */
     const int64_t *at = f->sym->panel, end = f->width * at[f->sym->n_super];
     const int64_t ahead = (f->width == 1 ? 1 : 2) * (backward ? -AHEAD : AHEAD);

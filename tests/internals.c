@@ -1584,6 +1584,69 @@ static void int_core(void) {
     }
 }
 
+/* The variables that are left have all the weight and are in the lists of degrees, elements weigh
+ * what they say, and each degree lies between the weight of the neighbours and the weight of all lists. */
+static int int_amd_sound(hdi_amd *g) {
+    hdi_amd_node *v = g->v;
+    int32_t i, k, q, left = g->left, listed = 0, wrong = 0;
+    for (i = 0; i < g->n; i++) {
+        int32_t exact = 0, sum = 0;
+        if (v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT) continue;
+        left -= v[i].weight;
+        listed += i < g->inner;
+        hdi_amd_next_flag(g, 1);
+        v[i].mark = g->flag;
+        for (k = 0; k < v[i].len; k++) {
+            const int32_t *e = g->list + v[i].at + k, is_element = k < v[i].elen;
+            const int32_t *l = is_element ? g->list + v[*e].at : e, len = is_element ? v[*e].len : 1;
+            int32_t all = 0;
+            wrong += (v[*e].elen == HDI_AMD_PIVOT) != is_element || (is_element && v[*e].mark == 0);
+            for (q = 0; q < len; q++) {
+                all += v[l[q]].weight;
+                exact += v[l[q]].mark == g->flag ? 0 : v[l[q]].weight;
+                v[l[q]].mark = g->flag;
+            }
+            sum += is_element ? all - v[i].weight : all;
+            wrong += is_element && all != v[*e].degree;
+        }
+        wrong += i < g->inner && (v[i].degree < exact || v[i].degree > sum);
+    }
+    for (k = 0; k <= g->n; k++)
+        for (i = g->head[k]; i >= 0; i = v[i].next, listed--)
+            wrong += v[i].degree != k || k < g->least || v[i].weight == 0 || v[i].elen == HDI_AMD_PIVOT;
+    return wrong == 0 && left == 0 && listed == 0;
+}
+
+/* Minimum degree with a halo, step by step: what it keeps is sound after each. */
+static void int_amd_steps(void) {
+    enum { SIDE = 24, N = SIDE * SIDE, INNER = N - 2 * SIDE };
+    static int32_t ptr[INNER + 1], col[8 * INNER], perm[INNER], seen[INNER];
+    hdi_amd_graph rows = {N, INNER, ptr, col};
+    static hdi_amd g;
+    int32_t i, dx, dy, count, z = 0, *work;
+    for (i = 0; i < INNER; i++) {
+        ptr[i] = z;
+        for (dy = -1; dy <= 1; dy++)
+            for (dx = -1; dx <= 1; dx++) {
+                const int32_t x = i % SIDE + dx, y = i / SIDE + dy;
+                if (x < 0 || y < 0 || x >= SIDE || y >= SIDE || (dx == 0 && dy == 0) || dx == -dy) continue;
+                col[z++] = x + SIDE * y;
+            }
+    }
+    ptr[INNER] = z;
+    work = (int32_t *)malloc((size_t)hdi_amd_words(INNER, N - INNER, z) * sizeof *work);
+    count = hdi_amd_start(&g, &rows, work);
+    CHECK(int_amd_sound(&g));
+    while (g.done < count) {
+        hdi_amd_run(&g, g.done + 1);
+        CHECK(int_amd_sound(&g));
+    }
+    hdi_amd_number(&g, perm);
+    for (i = 0; i < INNER; i++) seen[perm[i]]++;
+    for (i = 0; i < INNER; i++) CHECK(seen[i] == 1);
+    free(work);
+}
+
 /* The tests, in groups that free what they made. */
 static void (*const int_tests[])(void) = {
     int_few_tasks, int_division, int_not_finite, int_complex, int_sizes, int_texts, int_sums, int_arrays, int_memory,
@@ -1592,7 +1655,7 @@ static void (*const int_tests[])(void) = {
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
     int_least_squares, int_exp_rest, int_patches, int_patches_means, int_core, int_source_bound, int_links, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
-    int_damages_4, int_damages_5,
+    int_damages_4, int_damages_5, int_amd_steps,
 };
 
 int main(int argc, char **argv) {
