@@ -17818,7 +17818,8 @@ static hd_status hdi_heat_by_iterations(hdi_heat_call *h) {
     } else {
         if (hdi_heat_set(h, &set) < 0) return h->e->status;
         hdi_report_set(h->rep, &set);
-        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, set.n_poles) < 0 ||
+        /* one system at least: a set may have no poles */
+        if (hdi_heat_lanes(h, HDI_LANES_ITERATIVE, 0, hdi_high32(set.n_poles, 1)) < 0 ||
             hdi_family_prepare(&heat->fam, &set, h->t, heat->lane, h->n_lanes, h->e) < 0) return h->e->status;
         if (hdi_family_shares(&heat->fam)) h->n_lanes = 1;
     }
