@@ -16336,14 +16336,14 @@ static double hdi_decayed(const hdi_spec_sums *a, double x) { return x * a->root
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
 
-/* Pairs whose residuals are known; x->off has room. Three times what was measured covers its rounding: 2.8
- * was seen on graphs and slivers with a tolerance of 1e-12. */
+/* Pairs whose residuals are known; x->off has room. By estimate four times what was measured covers its
+ * rounding: 2.8 was seen on graphs and slivers with a tolerance of 1e-12. */
 static void hdi_modes_know(hdi_modes *x) {
     const hd_spectrum *s = &x->s;
     const double unit = s->n_constant < s->count ? s->value[s->n_constant] : s->next < HUGE_VAL ? s->next : 0;
     int32_t q;
     for (q = 0, x->off_norm = 0; q < s->count; q++) {
-        x->off[q] = 3 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], unit));
+        x->off[q] = 4 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], unit));
         x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
     }
     x->low = hdi_max(0, unit - x->off_norm);
@@ -17617,7 +17617,7 @@ static hdi_ledger hdi_heat_ledger(const hdi_heat_call *h, const hdi_lane *lane) 
     const hd_evidence solver = still || h->method == HD_METHOD_DIRECT ? HD_EVIDENCE_NONE
                              : h->method == HD_METHOD_KRYLOV ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_PROVEN;
     hdi_ledger ledger = hdi_ledger_begin(rational, solver, lane->rounding, 0);
-    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, lane->rounding, 0);
+    if (h->by_pairs) return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, lane->rounding, 0);
     ledger.evidence.local = !h->part ? HD_EVIDENCE_NONE : poles ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_MEASURED;
     return ledger;
 }
@@ -19007,7 +19007,7 @@ static void hdi_modes_tell(const hd_heat *heat, hd_report *rep) {
 }
 
 static hdi_ledger hdi_modes_ledger(void) {
-    return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, 1);
+    return hdi_ledger_begin(HD_EVIDENCE_PROVEN, HD_EVIDENCE_ESTIMATED, HD_EVIDENCE_ESTIMATED, 1);
 }
 
 /* ---- which way ---- */

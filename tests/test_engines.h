@@ -101,7 +101,7 @@ static void eng_check_report(const hd_report *rep, hd_method method, const char 
         const int pairs = strstr(rep->reason, "eigenpairs") != NULL;
         CHECK_MSG(rep->solver == HD_SOLVER_AUTO && rep->precond == HD_PRECOND_NONE && rep->iterations == 0 && (rep->poles == HD_POLES_DEFAULT) == pairs,
                   "%s: solver %d, precond %d, %d iterations, poles %d, %s", what, (int)rep->solver, (int)rep->precond, (int)rep->iterations, (int)rep->poles, rep->reason);
-        CHECK_MSG((rep->residual > 0) <= (rep->error_rounding > 0) && rep->evidence_solver == (pairs ? HD_EVIDENCE_PROVEN : HD_EVIDENCE_NONE),
+        CHECK_MSG((rep->residual > 0) <= (rep->error_rounding > 0) && rep->evidence_solver == (pairs ? HD_EVIDENCE_ESTIMATED : HD_EVIDENCE_NONE),
                   "%s: residual %g, bound %g", what, rep->residual, rep->error_rounding);
     }
     if (method == HD_METHOD_KRYLOV) {

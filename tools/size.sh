@@ -73,7 +73,7 @@ one all all.c 0
 one column column.c 1
 one plain column.c 1 -DHEATDIFF_NO_SIMD
 # the same program without what it cannot need; by factors of poles or krylov, by krylov alone, by iterations alone
-lean="-DHEATDIFF_NO_DIAGONAL -DHEATDIFF_NO_INTRINSIC -DHEATDIFF_NO_SPECTRUM"
+lean="-DHEATDIFF_NO_DIAGONAL -DHEATDIFF_NO_INTRINSIC -DHEATDIFF_NO_SPECTRUM -DHEATDIFF_NO_POINTS -DHEATDIFF_NO_POLYGONS"
 one lean column.c 1 $lean -DHEATDIFF_NO_ITERATIVE
 one lean_plain column.c 1 $lean -DHEATDIFF_NO_ITERATIVE -DHEATDIFF_NO_SIMD
 one krylov column.c 1 $lean -DHEATDIFF_NO_ITERATIVE -DHEATDIFF_NO_POLE_FACTORS -DHEATDIFF_NO_SIMD
