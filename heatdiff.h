@@ -1475,7 +1475,7 @@ static HDI_OFTEN double hdi_det2(double a, double b, double c, double d) {
  * overflow nor vanish. */
 #define HDI_RANGE 1e100
 
-static int hdi_in_range(double x) { return x >= 1 / HDI_RANGE && x <= HDI_RANGE; }
+static int hdi_in_range(double x) { return hdi_finite(x) && x >= 1 / HDI_RANGE && x <= HDI_RANGE; }
 
 /* x 2^exponent and a / b, infinite where they would overflow; a >= 0, b > 0. */
 static double hdi_scale(double x, int exponent) {
@@ -16318,6 +16318,7 @@ typedef struct hdi_spec_sums {
     int power;                   /* 0: of exp(-t lambda); without a time of 1/lambda^power */
     /* for one time */
     int32_t first;               /* the constants are before it */
+    int32_t row;                 /* of a source that is one vertex, else -1 */
     double *weight;              /* [count] exp(-t (theta - low)), or 1/theta^power */
     double depth, root;          /* t low; exp(-t low/2): whole it would underflow before answers do */
     double cut, mixed, square;   /* exp(-t (a - low)), m, m^2 */
@@ -16336,14 +16337,14 @@ static double hdi_decayed(const hdi_spec_sums *a, double x) { return x * a->root
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
 
-/* Pairs whose residuals are known; x->off has room. By estimate four times what was measured covers its
+/* Pairs whose residuals are known; x->off has room. By estimate three times what was measured cover its
  * rounding: 2.8 was seen on graphs and slivers with a tolerance of 1e-12. */
 static void hdi_modes_know(hdi_modes *x) {
     const hd_spectrum *s = &x->s;
     const double unit = s->n_constant < s->count ? s->value[s->n_constant] : s->next < HUGE_VAL ? s->next : 0;
     int32_t q;
     for (q = 0, x->off_norm = 0; q < s->count; q++) {
-        x->off[q] = 4 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], unit));
+        x->off[q] = 3 * hdi_ratio_root(s->lap) * hdi_bound_times(s->residual[q], hdi_max(s->value[q], unit));
         x->off_norm = hdi_pythag(x->off_norm, x->off[q]);
     }
     x->low = hdi_max(0, unit - x->off_norm);
@@ -16441,15 +16442,19 @@ static HDI_INLINE double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t 
 }
 
 /* The part of the constants in a value at vertex v, or in the square of a distance: it does not decay. *off:
- * plus its rounding. */
+ * plus its rounding. Within a component masses are compared themselves, which may be nearly the same. */
 static HDI_INLINE double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double *off) {
+    const hd_laplacian *lap = a->of->s.lap;
+    const int32_t row = lap->row[v], from = a->mass && a->distance && !lap->B && row >= 0 ? a->row : -1;
+    const int near = from >= 0 && lap->component[row] == lap->component[from];
     double sum = 0;
     int32_t q;
     for (q = 0; q < a->first && !a->power; q++) {
         const double y = hdi_spec_entry(a->of, q, v, a->mass && (a->distance || a->diagonal));
         const double x = a->diagonal ? hdi_spec_entry(a->of, q, v, 0) : a->x[q];
-        const double size = !a->distance ? fabs(y * x) : y != x ? fabs(y) + fabs(x) : 0;
-        sum += a->distance ? (y - x) * (y - x) : y * x;
+        const double d = near ? (lap->mass[row] - lap->mass[from]) * hdi_spec_entry(a->of, q, v, 0) : y - x;
+        const double size = !a->distance ? fabs(y * x) : near || d == 0 ? fabs(d) : fabs(y) + fabs(x);
+        sum += a->distance ? d * d : y * x;
         *off += (HDI_NOISE_TERMS * DBL_EPSILON + a->sums_off) * size;
     }
     return sum;
@@ -16530,6 +16535,7 @@ static void hdi_spec_sum_from(hdi_spec_sums *a, const hdi_terms *from) {
         for (q = 0; q < s->count; q++) a->x[q] += w * hdi_spec_entry(a->of, q, v, a->mass);
         hdi_share_add(&a->from, w, hdi_share_of(a, v, a->mass));
     }
+    a->row = from->weight ? -1 : s->lap->row[from->one];
     /* weights of sum 1 leave a constant as it is */
     for (q = 0; q < a->first && still; q++) a->x[q] = hdi_spec_entry(a->of, q, hdi_terms_at(from, 0), 0);
 }

@@ -298,7 +298,7 @@ static void mov_geodesic_refused(const shape *s, hd_geodesic_border border) {
         memset(&o, 0, sizeof o);
         o.border = border;
         o.updatable = 1;
-        o.t = way == 1 ? 1e-250 : 0;
+        o.t = way == 1 ? 1e-90 : 0;
         o.t_in_h2 = way == 2 ? 1e-100 : 0;
         CHECK(hd_geodesic_create(&g, MESH_TRIANGLES(s->xyz, s->n, s->tri, s->n_tri), &o, &e) == HD_OK);
         o.updatable = 0;
