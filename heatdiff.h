@@ -14260,19 +14260,29 @@ static hd_status hdi_lanczos_step(const hdi_lanczos_task *task, hdi_lane *lane, 
     return HD_OK;
 }
 
+/* |exp(-s T) e_1| */
+static double hdi_lanczos_size(const hdi_lanczos *z, double s) {
+    double sum = 0;
+    int32_t i;
+    for (i = 0; i < z->m; i++)
+        sum += z->ends[2 * i] * z->ends[2 * i] * exp(-2 * s * hdi_max(0, z->d[i]));
+    return sqrt(sum);
+}
+
 /* A bound on what rounding does to m steps from a vector of norm one. With L v_j = B (sum of v_i T_ij) +
  * errors of size noise in the norm of B^-1, the answer is off by sum_j int_0^t exp(-(t-s) B^-1 L) (error j)
- * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, and by Cauchy
- * and Schwarz that is at most the root of t times the integral of its square. Rounding of the answer's own
- * sum comes on top. */
+ * e_j' exp(-s T) e_1 ds. This is at most noise sqrt(m) times the integral of |exp(-s T) e_1|, which falls
+ * with s, so that left Riemann sums are above it. Rounding of the answer's own sum comes on top. */
 static double hdi_lanczos_rounding(const hdi_lanczos *z, double t) {
     const int32_t m = z->m;
-    double square = 0;
-    int32_t i;
-    for (i = 0; i < m; i++)
-        square += z->ends[2 * i] * z->ends[2 * i] * hdi_exp_integral(2 * hdi_max(0, z->d[i]), t);
-    return sqrt((double)m) * (hdi_residual_seen(0, z->noise) * sqrt(t * square) +
-                              m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
+    double integral = 0, from = 0, to;
+    int32_t k;
+    for (k = 24; k >= 0; k--, from = to) {
+        to = ldexp(t, -2 * k);
+        integral += hdi_lanczos_size(z, from) * (to - from);
+    }
+    return sqrt((double)m) *
+           (hdi_residual_seen(0, z->noise) * integral + m * DBL_EPSILON * sqrt(hdi_dot(z->y, z->y, m)));
 }
 
 /* Steps to the next look at the bound for a start of norm one, which falls like exp(-m^2): half of those that

@@ -38,8 +38,8 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 24160,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
-    "api": 505,               # lines of room [api]; goal 1100
+    "lines": 23704,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "api": 501,               # lines of room [api]; goal 1100
     "median": 9,             # lines of a function; goal 13
     "longest": 46,            # lines of the longest function; goal 60
     "long": 0,                # functions longer than 60 lines; goal 0
