@@ -18375,25 +18375,35 @@ static hd_status hdi_local_add(hdi_local *l, int32_t row, hd_error *e) {
 }
 
 /* Adds the rows that edges lead to from those that are there: all that are less than `hops` edges away, and
- * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that the
- * neighbour which led to it came from: edges turn too often for their lengths to be added up. */
+ * those within `reach`; stops beyond `most` rows. In space a row is as far as from the first row that its
+ * neighbour came from: edges turn too often for their lengths to be added up. Rows that are found to be
+ * nearer than at first are followed again. */
 static hd_status hdi_local_grow(hdi_local *l, double reach, double hops, int32_t most, hd_error *e) {
     const hd_laplacian *lap = l->source;
-    int32_t i, level = 0, level_end = l->n;
+    int32_t i, first = 0, next, level = 0, level_end = l->n;
     int64_t p;
-    for (i = 0; i < l->n && l->n <= most; i++) {
-        hdi_reached at = l->at[i];
-        const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
-        if (i == level_end) {
-            level++;
-            level_end = l->n;
-        }
-        for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
-            at.row = lap->L.col[p];
-            if (l->place[at.row]) continue;
-            if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
-            at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
-            if ((at.way <= reach || level < hops) && hdi_local_put(l, at, e) < 0) return e->status;
+    for (; first < l->n && l->n <= most; first = next) {
+        next = INT32_MAX;
+        for (i = first; i < l->n && l->n <= most; i++) {
+            hdi_reached at = l->at[i];
+            const double along = lap->xyz ? 0 : at.way + hdi_local_edge(lap, at.row);
+            if (i == level_end) {
+                level++;
+                level_end = l->n;
+            }
+            for (p = lap->L.row_ptr[l->at[i].row]; p < lap->L.row_ptr[l->at[i].row + 1]; p++) {
+                const int32_t there = l->place[lap->L.col[p]] - 1;
+                if (there >= 0 && l->at[there].way == 0) continue;
+                if (at.unit < 0) at.unit = hdi_local_unit(lap, at.from);
+                at.row = lap->L.col[p];
+                at.way = lap->xyz ? at.unit * hdi_local_apart(lap, at.row, at.from) : along;
+                if (there < 0 && (at.way <= reach || level < hops)) {
+                    if (hdi_local_put(l, at, e) < 0) return e->status;
+                } else if (there >= 0 && l->at[there].way > at.way) {
+                    l->at[there] = at;
+                    next = there < i ? hdi_low32(next, there) : next;
+                }
+            }
         }
     }
     return e->status;
@@ -18598,7 +18608,7 @@ static double hdi_local_more(const hd_heat *heat, double reach, int32_t tries, d
 
 /* The radius of a ball of this reach where edges are so long and the root of t is `root`. Without places ways
  * go over edges, and are longer than straight ones by the first number. */
-#define HDI_LOCAL_TURNS 1.2
+#define HDI_LOCAL_TURNS 1.36
 
 static double hdi_local_radius(const hd_heat *heat, double edge, double root, double reach) {
     const double turns = heat->source->xyz ? 1 : HDI_LOCAL_TURNS;
