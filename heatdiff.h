@@ -16487,8 +16487,9 @@ static hdi_parts hdi_spec_off(const hdi_spec_sums *a, int32_t v, double d) {
         off.rational = all > 0 && hdi_finite(all) ? all / hdi_max(d, sqrt(all)) : all;
         return off;
     }
-    beside = hdi_decayed(a, (a->cut + a->square) * y.left);
-    off.rational = beside > 0 ? beside * (beside / (d + hdi_pythag(d, beside))) : 0;
+    beside = hdi_decayed(a, hdi_bound_times(a->cut + a->square, y.left));
+    if (beside > 0 && hdi_finite(beside)) beside *= beside / (d + hdi_pythag(d, beside));
+    off.rational = beside;
     off.solver = hdi_decayed(a, hdi_bound_times(a->inner, y.found) + hdi_bound_times(a->mixed, y.left));
     off.rounding += hdi_spec_rounding(a, a->noise * y.whole + a->sums_off * f.whole, d);
     return off;
