@@ -12651,7 +12651,7 @@ static hd_status hdi_fit_take(const hdi_fit *k, int32_t q, const hd_rational *se
     to.lambda_max = k->top;
     to.largest = largest;
     to.a0 = largest * set->a0;
-    fine = hdi_finite(to.a0) && hdi_finite(set->max_error);
+    fine = hdi_finite(to.a0) && hdi_finite(set->max_error) && hdi_finite(set->max_weighted_error);
     for (i = 0; i < set->n_poles; i++) {
         to.theta[i] = hdi_cscale(-unit, set->theta[i]);
         to.a[i] = hdi_cscale(-unit * largest, set->a[i]);
@@ -16341,8 +16341,10 @@ typedef struct hdi_spec_sums {
     double *column, *off;        /* [n] */
 } hdi_spec_sums;
 
-/* exp(-t low) x */
-static double hdi_decayed(const hdi_spec_sums *a, double x) { return x * a->root * a->root; }
+/* exp(-t low) x; bounds x may be infinite where nothing is left. */
+static double hdi_decayed(const hdi_spec_sums *a, double x) {
+    return a->root > 0 ? x * a->root * a->root : 0;
+}
 
 /* The integral of exp(-s gap) up to t is at most this. */
 static double hdi_time_within(double t, double gap) { return gap > 0 ? hdi_min(t, 1 / gap) : t; }
@@ -16383,7 +16385,8 @@ static void hdi_spec_sum_at(hdi_spec_sums *a, double t) {
     a->inner = a->side = 0;
     for (q = a->first; q < s->count; q++) {
         const double x = s->value[q], over = hdi_max(0, x - low), off = of->off[q];
-        const double w = !a->power ? exp(-hdi_bound_times(t, over)) : x > 0 ? pow(x, -a->power) : 0;
+        const double inverse = x > 0 ? hdi_min(pow(x, -a->power), DBL_MAX) : 0;
+        const double w = a->power ? inverse : exp(-hdi_bound_times(t, over));
         if (a->power) {                          /* A^-1 - 1/x, A >= low; and the same of squares */
             const double by = hdi_bound_times((a->power == 1 ? 1 : 1 / x + hdi_quotient(1, low)) / x,
                                               hdi_quotient(off, low));

@@ -38,7 +38,7 @@ FOREIGN = ("dgemm_", "WIN32_LEAN_AND_MEAN", "NOMINMAX", "syscall", "DWORD")   # 
 
 # What holds today. Whenever --check says that a limit can come down, --tighten brings it down.
 LIMITS = {
-    "lines": 23715,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
+    "lines": 23718,           # goal 16000; raised from 23000 by eigenpairs, estimates, filters, sources and more
     "api": 501,               # lines of room [api]; goal 1100
     "median": 9,             # lines of a function; goal 13
     "longest": 46,            # lines of the longest function; goal 60
