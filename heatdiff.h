@@ -14501,7 +14501,7 @@ static void hdi_wide_sum(double *to, const double *a, const double *x, const dou
 /* One step for all. */
 static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     const hd_laplacian *lap = z->m->lap;
-    static const double one[HDI_WIDE] = {1, 1, 1, 1, 1, 1, 1, 1}, zero[HDI_WIDE] = {0, 0, 0, 0, 0, 0, 0, 0};
+    static const double hdi_one[HDI_WIDE] = {1, 1, 1, 1, 1, 1, 1, 1}, hdi_zero[HDI_WIDE] = {0};
     const int64_t n = lap->n_active, count = hdi_krylov_size(z);
     const int32_t j = z->steps, wide = z->wide;
     const double *v = z->v[j], *v_old = j > 0 ? z->v[j - 1] : z->v[j];
@@ -14517,15 +14517,15 @@ static hd_status hdi_krylov_step(hdi_krylov *z, hd_context *ctx, hd_error *e) {
     for (r = 0; r < HDI_WIDE; r++) z->noise[j][r] = sqrt(z->noise[j][r]);
     if (j == 0 || j == 3) hdi_krylov_probe(z);
     hdi_wide_dots(w, z->c, NULL, n, wide, z->alpha[j]);
-    hdi_wide_sum(w, one, w, z->alpha[j], v, z->beta[j], v_old, count);
+    hdi_wide_sum(w, hdi_one, w, z->alpha[j], v, z->beta[j], v_old, count);
     hdi_mass_apply(lap, wide, w, z->c, ctx);
     hdi_wide_dots(w, z->c, NULL, n, wide, norm);
     for (r = 0; r < HDI_WIDE; r++) {
         z->beta[j + 1][r] = norm[r] > 0 ? sqrt(norm[r]) : 0;
         inv[r] = norm[r] > 0 ? 1 / z->beta[j + 1][r] : 0;
     }
-    hdi_wide_sum(z->v[j + 1], inv, w, zero, w, zero, w, count);
-    hdi_wide_sum(z->c, inv, z->c, zero, w, zero, w, count);
+    hdi_wide_sum(z->v[j + 1], inv, w, hdi_zero, w, hdi_zero, w, count);
+    hdi_wide_sum(z->c, inv, z->c, hdi_zero, w, hdi_zero, w, count);
     z->steps = j + 1;
     return HD_OK;
 }
