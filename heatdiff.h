@@ -16459,14 +16459,14 @@ static HDI_INLINE double hdi_spec_entry(const hdi_modes *of, int32_t q, int32_t 
 static HDI_INLINE double hdi_spec_still(const hdi_spec_sums *a, int32_t v, double *off) {
     const hd_laplacian *lap = a->of->s.lap;
     const int32_t row = lap->row[v], from = a->mass && a->distance && !lap->B && row >= 0 ? a->row : -1;
-    const int near = from >= 0 && lap->component[row] == lap->component[from];
+    const int same = from >= 0 && lap->component[row] == lap->component[from];
     double sum = 0;
     int32_t q;
     for (q = 0; q < a->first && !a->power; q++) {
         const double y = hdi_spec_entry(a->of, q, v, a->mass && (a->distance || a->diagonal));
         const double x = a->diagonal ? hdi_spec_entry(a->of, q, v, 0) : a->x[q];
-        const double d = near ? (lap->mass[row] - lap->mass[from]) * hdi_spec_entry(a->of, q, v, 0) : y - x;
-        const double size = !a->distance ? fabs(y * x) : near || d == 0 ? fabs(d) : fabs(y) + fabs(x);
+        const double d = same ? (lap->mass[row] - lap->mass[from]) * hdi_spec_entry(a->of, q, v, 0) : y - x;
+        const double size = !a->distance ? fabs(y * x) : same || d == 0 ? fabs(d) : fabs(y) + fabs(x);
         sum += a->distance ? d * d : y * x;
         *off += (HDI_NOISE_TERMS * DBL_EPSILON + a->sums_off) * size;
     }
