@@ -16,7 +16,7 @@ ${CC:-cc} -std=c99 -O1 -Wall -Wextra -Wshadow -Werror $program -o "$work/patches
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
 cd "$work"
 rm -f ./*.npy*
-options=(-size 80 -piece 1300 -t 0.5 -memory 0.05)
+options=(-size 80 -piece 1300 -t 0.5 -memory 0.015)
 ./patches "${options[@]}" one.npy >/dev/null 2>one.log
 grep -q ' [2-9][0-9]* patches' one.log || { cat one.log; exit 1; }     # the byte limit counts
 runs=1
@@ -35,7 +35,7 @@ head -c 100 4.npy.1 >cut && mv cut 4.npy.1     # a file of something else
 ./patches "${options[@]}" 4.npy >/dev/null 2>again.log
 [ "$(grep -c piece again.log)" = 2 ] || { cat again.log; exit 1; }
 same 4.npy
-./patches -size 80 -piece 1300 -t 0.7 -memory 0.05 4.npy >/dev/null 2>again.log     # another question
+./patches -size 80 -piece 1300 -t 0.7 -memory 0.015 4.npy >/dev/null 2>again.log     # another question
 [ "$(grep -c piece again.log)" = 5 ] || { cat again.log; exit 1; }
 ! cmp -s 4.npy one.npy
 echo "$runs passed, 0 failed"

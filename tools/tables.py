@@ -11,7 +11,7 @@ import sys
 
 CHECKED = {     # sha256 of script and table
     "poles.py": "2bdf0e3becf82ed93843d82556e237ddaa0b1d9d04f5d0df6af63263d6a6700e",
-    "shared_poles.py": "0f4702d185d2ea8d7ac8134b916b78791eb3f5f804abbfc9830489e4ca8f052e",
+    "shared_poles.py": "21c7559b1b387ef3f5e32151f92563e684b2d3b4c4a6e53ad30add1ea1c5d647",
 }
 TOOLS = os.path.dirname(os.path.abspath(__file__))
 
