@@ -1308,8 +1308,8 @@ HEATDIFF_API hd_status hd_geodesic_distance(hd_geodesic *g, const hd_sources *so
 #define HDI_UNROLL
 #endif
 
-/* 1: code is to be small, as gcc -Os says: small tiles, few copies of kernels, none for AVX-512. OFTEN is for
- * functions of some size with many callers, which are then called. */
+/* 1: the code is to be small, as gcc -Os asks: small tiles, few copies of kernels, none for AVX-512. OFTEN is
+ * for functions with many callers, which are inline only where the code may be large. */
 #ifdef __OPTIMIZE_SIZE__
 #define HDI_SMALL 1
 #define HDI_OFTEN inline
@@ -21369,7 +21369,7 @@ static double hdi_metric_square(const hdi_metric *x, const hdi_metric_end *a, co
     return a->f - (2 * f_ab - b->f);
 }
 
-/* The distance of this square; it and its errors are noted. */
+/* The distance whose square is d2; it and its errors are noted. */
 static double hdi_metric_root(const hdi_metric *x, double d2, hdi_parts off, hd_report *rep,
                               hdi_ledger *ledger) {
     const double delta = hdi_parts_sum(&off), d = d2 > 0 ? sqrt(d2) : 0;
@@ -21395,12 +21395,12 @@ static void hdi_metric_differences(const hdi_metric *x, const hdi_terms *s, int3
     for (v = begin; v < end; v++) {
         const int32_t r = lap->row[v];
         const hdi_metric_end to = hdi_metric_row(x, r);
-        const int apart = x->kind->apart && (r < 0 || own < 0 || lap->component[r] != own);
+        const int same = !s->weight && v == s->one;
+        const int apart = !same && x->kind->apart && (r < 0 || own < 0 || lap->component[r] != own);
         hdi_parts part = {0, 0, 0, 0};
         double d2;
         out[v] = apart ? HUGE_VAL : 0;
-        if (!s->weight && v == s->one) out[v] = 0;
-        if (apart || (!s->weight && v == s->one)) continue;
+        if (apart || same) continue;
         d2 = hdi_metric_square(x, &from, &to, r < 0 ? 0 : u[r], g && r >= 0 ? g + r : NULL,
                                s->weight || own >= 0 ? off : NULL, &part);
         out[v] = hdi_metric_root(x, d2, part, rep, ledger);

@@ -1471,6 +1471,28 @@ static void int_few_tasks(void) {
 #endif
 }
 
+/* A margin is as wide all around a piece: a row that is near enough to any row of it is there, whatever way led to it first. */
+static void int_margins(void) {
+    const hd_laplacian *lap = kit_pair("torus/96/64 vor");
+    const double reach = 20 * hdi_local_edge(lap, lap->n_active / 2);
+    double middle = 0;
+    int32_t core, missing = 0, i, j;
+    hdi_local *l;
+    hd_error e;
+    hdi_error_clear(&e);
+    l = hdi_local_open(kit_heat(lap, "method=local"), &e);
+    for (i = 0; i < lap->n_active; i++) middle += lap->xyz[3 * i] / lap->n_active;
+    for (i = 0; i < lap->n_active; i++)
+        if (lap->xyz[3 * i] < middle - reach / 2) CHECK(hdi_local_add(l, i, &e) >= 0);
+    core = l->n;
+    CHECK(core > 0 && hdi_local_grow(l, reach, 0, INT32_MAX, &e) >= 0 && l->n > core && l->n < lap->n_active);
+    for (i = 0; i < lap->n_active; i++)
+        for (j = 0; j < core && l->place[i] <= 0; j++)
+            if (hdi_local_unit(lap, l->at[j].row) * hdi_local_apart(lap, i, l->at[j].row) < 0.95 * reach) j = core, missing++;
+    CHECK_MSG(missing == 0, "%d of %d rows are missing", (int)missing, (int)l->n);
+    hdi_local_clear(l);
+}
+
 /* Where only means are left a component counts once in traces, in however many patches it lies. */
 static void int_patches_means(void) {
     static const char *const specs[2] = {"flat/24/24/0.3 fem", "bumpy/3/1 vor"};
@@ -1653,7 +1675,7 @@ static void (*const int_tests[])(void) = {
     int_large_pages, int_sorting, int_union_find, int_tridiagonal, int_tridiagonal_odd, int_collinear, int_krylov_done,
     int_ildl, int_products, int_residuals, int_noise_weights, int_pole_bounds, int_resolvent_weights, int_no_numbers, int_lanczos_bound,
     int_krylov_slopes, int_ritz_above, int_probe_rows, int_pairs_degree, int_spectrum_proof,
-    int_least_squares, int_exp_rest, int_patches, int_patches_means, int_core, int_source_bound, int_links, int_shared_bounds, int_length_area, int_around, int_selection,
+    int_least_squares, int_exp_rest, int_patches, int_margins, int_patches_means, int_core, int_source_bound, int_links, int_shared_bounds, int_length_area, int_around, int_selection,
     int_eigen3, int_polygon, int_krylov_bounds, int_damages_1, int_damages_2, int_damages_3,
     int_damages_4, int_damages_5, int_amd_steps,
 };
